@@ -1,0 +1,63 @@
+# `make` lists the targets. Each does its own set-up: it needs only make and a Python of 3.10 to 3.13.
+# Written for GNU make 3.81 (macOS) and a plain POSIX sh.
+
+VENV    = .venv
+RUN     = $(VENV)/bin/python
+PYTHONS = $(if $(PYTHON),$(PYTHON),python3.13 python3.12 python3.11 python3.10 python3)
+# One stamp per requested Python, so that `make test PYTHON=python3.12` rebuilds a .venv made with another one.
+STAMP   = $(VENV)/.installed$(if $(PYTHON),-$(notdir $(PYTHON)))
+SUITED  = import sys; sys.exit(not (3, 10) <= sys.version_info[:2] <= (3, 13))
+
+.PHONY: help cube disc intact test lint validation clean
+
+help:
+	@echo 'make cube        slit cube in uniaxial compression    -> renders/cube/'
+	@echo 'make disc        slit disc in diametral compression   -> renders/disc/'
+	@echo 'make intact      cube without a flaw                  -> renders/intact/'
+	@echo 'make test        the test suite'
+	@echo 'make lint        ruff check, ruff format --check'
+	@echo 'make validation  the longer tier of tests'
+	@echo 'make clean       remove .venv, build products and caches; renders/ stays'
+	@echo
+	@echo 'Options go through ARGS:  make cube ARGS="--quick --set flaw_angle=30"'
+	@echo '                          make test ARGS="-k shape -x"'
+	@echo 'Another Python (3.10 to 3.13), replacing .venv:  make test PYTHON=python3.12'
+
+cube disc intact: $(STAMP)
+	$(RUN) -m rsmpm_ti.scene $@ $(ARGS)
+
+test: $(STAMP)
+	$(RUN) -m pytest $(ARGS)
+
+validation: $(STAMP)
+	$(RUN) -m pytest -m validation $(ARGS)
+
+lint: $(STAMP)
+	$(RUN) -m ruff check .
+	$(RUN) -m ruff format --check .
+
+# Candidates are executed, not just looked up: a pyenv shim may exist and fail. Debian's python3 comes without
+# ensurepip, and its `-m venv` would leave a .venv without pip behind.
+$(STAMP): pyproject.toml
+	@if test -z "$(PYTHON)" && $(RUN) -c '$(SUITED)' && $(RUN) -m pip --version; then \
+	  exit 0; \
+	fi >/dev/null 2>&1; \
+	bare=; \
+	for python in $(PYTHONS); do \
+	  "$$python" -c '$(SUITED)' >/dev/null 2>&1 || continue; \
+	  "$$python" -c 'import ensurepip, venv' >/dev/null 2>&1 || { bare=$$python; continue; }; \
+	  echo "$(VENV): made with $$python, `"$$python" --version`"; \
+	  exec "$$python" -m venv --clear $(VENV); \
+	done; \
+	if test -n "$$bare"; then \
+	  echo "$$bare cannot make virtual environments. On Debian and Ubuntu: apt install python3-venv" >&2; \
+	else \
+	  echo 'No working Python of 3.10 to 3.13 among: $(PYTHONS). Name one: make test PYTHON=/path/to/python3.12' >&2; \
+	fi; \
+	exit 1
+	$(RUN) -m pip install --quiet --disable-pip-version-check -e '.[test]'
+	@touch $@
+
+clean:
+	rm -rf $(VENV) build dist *.egg-info .pytest_cache .ruff_cache .hypothesis
+	find rsmpm_ti scenes tests -name __pycache__ -type d -prune -exec rm -rf {} +

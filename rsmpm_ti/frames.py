@@ -1,0 +1,114 @@
+"""When to paint, and painting: frames at equal strain or time, more when failed particles jump; movie and VTU."""
+
+import math
+from pathlib import Path
+
+import numpy as np
+
+from rsmpm_ti.laws import MohrCoulomb
+from rsmpm_ti.output import write_pvd, write_vtu
+from rsmpm_ti.paint.figure import FramePainter, write_png
+from rsmpm_ti.paint.movie import Movie
+from rsmpm_ti.paint.summary import summary_picture
+from rsmpm_ti.snapshot import Snapshot
+from rsmpm_ti.spec import Scene
+
+JUMP_SHARE, JUMP_GROWTH = 0.0003, 0.05
+"""A frame is added when failures since the last one exceed this share of all particles and of all failures so far."""
+
+
+class Timetable:
+    """Decides after each history row whether a frame or a VTU is due."""
+
+    def __init__(self, scene: Scene, particle_count: int):
+        self._frames, self._vtus = scene.output.frames, scene.output.vtu
+        self._jump = max(1.0, JUMP_SHARE * particle_count)
+        self._extra = self._frames  # jumps may at most double the number of frames
+        self._next_frame = self._next_vtu = 0
+        self._failed = 0.0
+
+    def frame_due(self, progress: float, failed: float) -> bool:
+        """progress: share of the run done, 0 to 1; failed: particles failed so far."""
+        if self._frames == 0:
+            return False
+        due = progress >= self._next_frame / self._frames - 1e-9
+        if due:
+            self._next_frame = math.floor(progress * self._frames + 1e-9) + 1
+        elif self._extra > 0 and failed - self._failed >= max(self._jump, JUMP_GROWTH * self._failed):
+            self._extra -= 1
+            due = True
+        if due:
+            self._failed = failed
+        return due
+
+    def vtu_due(self, progress: float) -> bool:
+        due = self._vtus > 0 and progress >= self._next_vtu / self._vtus - 1e-9
+        if due:
+            self._next_vtu = math.floor(progress * self._vtus + 1e-9) + 1
+        return due
+
+
+class Gallery:
+    """Paints and writes the pictures of one run into `out`."""
+
+    def __init__(self, scene: Scene, name: str, out: Path):
+        self._scene, self._name, self._out = scene, name, out
+        low, high = zip(*(body.region.bounds() for body in scene.bodies), strict=True)
+        lower, upper = np.min(low, axis=0)[:2], np.max(high, axis=0)[:2]
+        strain, load = load_limits(scene)
+        shared = {
+            "lower": tuple(lower), "upper": tuple(upper), "stress_limit": stress_limit(scene), "strain_limit": strain,
+            "load_limit": load, "backend": scene.output.painter,
+        }  # fmt: skip
+        self.painters = {kind: FramePainter(kind=kind, **shared) for kind in ("stress", "cracks")}
+        self.warning = ""
+        self._movie = None
+        if scene.output.movie:
+            try:
+                self._movie = Movie(out / f"{name}.mp4")
+            except RuntimeError as error:  # no encoder: frames still come
+                self.warning = str(error)
+        self.count = 0
+        self._vtus: list[tuple[float, str]] = []
+
+    def frame(self, snapshot: Snapshot, history: np.ndarray) -> None:
+        images = {kind: painter.paint(snapshot, history, self.count) for kind, painter in self.painters.items()}
+        for kind, image in images.items():
+            write_png(self._out / "frames" / f"{kind}_{self.count:04d}.png", image, painter=self._scene.output.painter)
+        if self._movie is not None:
+            self._movie.add(images["stress"], images["cracks"])
+        self.count += 1
+
+    def vtu(self, snapshot: Snapshot) -> None:
+        name = f"particles_{len(self._vtus):04d}.vtu"
+        write_vtu(self._out / name, snapshot)
+        self._vtus.append((snapshot.time, name))
+        write_pvd(self._out / "particles.pvd", self._vtus)
+
+    def close(self, snapshot: Snapshot, history: np.ndarray) -> None:
+        """Finish the movie, paint summary.png, give the painters' memory back."""
+        if self._movie is not None:
+            self._movie.close()
+        summary_picture(self._out / "summary.png", snapshot, history, self.painters["cracks"], self._scene.title)
+        for painter in self.painters.values():
+            painter.close()
+
+
+def stress_limit(scene: Scene) -> float:
+    """Colour limit [Pa]: 1.5 times the tensile strength, or for an elastic run a tenth of the load reached."""
+    if scene.output.stress_limit is not None:
+        return scene.output.stress_limit
+    if isinstance(scene.rock.criterion, MohrCoulomb):
+        return 1.5 * scene.rock.criterion.tensile_strength
+    return 0.1 * load_limits(scene)[1] if scene.loading.platens else 1e6
+
+
+def load_limits(scene: Scene) -> tuple[float | None, float | None]:
+    """Ends of the inset's axes: the last strain, and the stress an intact specimen would reach there (at most UCS)."""
+    if scene.loading.platens is None or scene.loading.width is None:
+        return None, None
+    strain = abs(scene.loading.strain_rate * scene.t_end)
+    load = scene.rock.elasticity.plane_strain_modulus * strain
+    if isinstance(scene.rock.criterion, MohrCoulomb):
+        load = min(load, 1.05 * scene.rock.criterion.ucs)
+    return strain, load

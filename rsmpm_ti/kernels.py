@@ -1,0 +1,365 @@
+"""The only kernels that see particles and nodes. They know no dimension, law, scheme or shape function by name.
+
+Indices: p particle, i node, ip pair. Every pass over particles goes by spans (see traversal.py): within one, a run of
+particles with the same base node keeps its node values in locals, loaded or added to the grid once per run.
+"""
+
+import taichi as ti
+
+from rsmpm_ti.laws import pressure_energy
+from rsmpm_ti.shape import fold_at_walls, tensor_gradient, tensor_weight
+from rsmpm_ti.tensors import extreme_principals, in_plane_times, isotropic, midpoint_gradient
+
+SMALL_MASS = 1e-12
+"""Nodes lighter than this share of a full cell hold nothing: their velocity would be round-off."""
+
+
+@ti.func
+def weights_at(sim: ti.template(), xi, base):
+    """Weights and gradients [width, dim] of a particle at grid coordinates xi, corrected at walls."""
+    grid = sim.grid
+    r = xi - base
+    w = fold_at_walls(sim.shape.weights(r), base, grid.wall_lower, grid.wall_upper)
+    dw = fold_at_walls(sim.shape.gradients(r), base, grid.wall_lower, grid.wall_upper)
+    return w, dw
+
+
+@ti.func
+def spread(sim: ti.template(), w, r):
+    """Diagonal of the APIC inertia D/dx^2 from the weights themselves: exact for every shape, beside walls too."""
+    D = ti.Vector.zero(float, sim.dim)
+    for k in ti.static(range(sim.shape.width)):
+        for d in ti.static(range(sim.dim)):
+            D[d] += w[k, d] * (k - r[d]) ** 2
+    return ti.max(D, 1e-6)
+
+
+@ti.func
+def gather(sim: ti.template(), field: ti.template(), base):
+    """Node vectors of one stencil, [stencil, dim]."""
+    local = ti.Matrix.zero(float, sim.size, sim.dim)
+    for k, offset in ti.static(enumerate(sim.stencil)):
+        value = field[base + ti.Vector(offset)]
+        for d in ti.static(range(sim.dim)):
+            local[k, d] = value[d]
+    return local
+
+
+@ti.func
+def scatter(sim: ti.template(), field: ti.template(), base, local: ti.template()):
+    """Add locals [stencil, dim] to the nodes of one stencil."""
+    for k, offset in ti.static(enumerate(sim.stencil)):
+        value = ti.Vector.zero(float, sim.dim)
+        for d in ti.static(range(sim.dim)):
+            value[d] = local[k, d]
+        sim.traversal.add(field, base + ti.Vector(offset), value)
+
+
+@ti.func
+def scatter_mass(sim: ti.template(), base, local: ti.template()):
+    for k, offset in ti.static(enumerate(sim.stencil)):
+        sim.traversal.add(sim.nodes.mass, base + ti.Vector(offset), local[k])
+
+
+@ti.kernel
+def clear_nodes(sim: ti.template()):
+    for i in ti.grouped(sim.nodes.mass):
+        sim.nodes.mass[i] = 0.0
+        sim.nodes.v[i] = ti.Vector.zero(float, sim.dim)
+        sim.nodes.f[i] = ti.Vector.zero(float, sim.dim)
+
+
+@ti.func
+def p2g_span(sim: ti.template(), start, stop, momentum: ti.template(), force: ti.template()):
+    """m_i = sum w_ip m_p, (mv)_i = sum w_ip m_p v_p, f_i = -sum V_p (sigma_p - q) grad w_ip (paper eq. 7-9).
+
+    Eq. 9 of the paper says deviatoric stress; the total stress is meant.
+    """
+    particles, nodes, grid = sim.particles, sim.nodes, sim.grid
+    m = ti.Vector.zero(float, sim.size)
+    mv, f = ti.Matrix.zero(float, sim.size, sim.dim), ti.Matrix.zero(float, sim.size, sim.dim)
+    current = ti.Vector.zero(int, sim.dim) - 1
+    for p in range(start, stop):
+        xi = grid.local(particles.reference[p] + particles.u[p])
+        base = grid.base(xi, sim.shape)
+        if (base != current).any():
+            if current[0] >= 0:
+                if ti.static(momentum):
+                    scatter_mass(sim, current, m)
+                    scatter(sim, nodes.v, current, mv)
+                if ti.static(force):
+                    scatter(sim, nodes.f, current, f)
+            m.fill(0.0)
+            mv.fill(0.0)
+            f.fill(0.0)
+            current = base
+        w, dw = weights_at(sim, xi, base)
+        m_p = sim.density * particles.volume[p]
+        v_p = particles.v[p]
+        V_p = particles.volume[p] * particles.J[p]
+        sigma = particles.sigma[p]
+        if ti.static(particles.viscous):
+            for d in ti.static(range(3)):
+                sigma[d] -= particles.q[p]
+        for k, offset in ti.static(enumerate(sim.stencil)):
+            if ti.static(momentum):
+                m_ip = tensor_weight(w, offset) * m_p
+                v_ip = v_p
+                if ti.static(particles.affine):
+                    v_ip += particles.C[p] @ ((base + ti.Vector(offset) - xi) * grid.dx)
+                m[k] += m_ip
+                for d in ti.static(range(sim.dim)):
+                    mv[k, d] += m_ip * v_ip[d]
+            if ti.static(force):
+                push = V_p * in_plane_times(sigma, tensor_gradient(w, dw, offset, grid.inv_dx))
+                for d in ti.static(range(sim.dim)):
+                    f[k, d] -= push[d]
+    if current[0] >= 0:
+        if ti.static(momentum):
+            scatter_mass(sim, current, m)
+            scatter(sim, nodes.v, current, mv)
+        if ti.static(force):
+            scatter(sim, nodes.f, current, f)
+
+
+@ti.kernel
+def p2g(sim: ti.template(), momentum: ti.template(), force: ti.template()):
+    """Particles to nodes: mass and momentum, force, or both in one pass."""
+    for colour in ti.static(range(sim.traversal.colours)):
+        for t in range(sim.traversal.items):
+            start, stop, slot = sim.traversal.span(t, colour)
+            if stop > start:
+                p2g_span(sim, start, stop, momentum, force)
+
+
+@ti.func
+def hold(sim: ti.template(), i, v, factor):
+    """Node velocity after every boundary that holds the node."""
+    held = v
+    for boundary in ti.static(sim.boundaries):
+        if boundary.holds(sim.grid.position(i), sim.grid.dx):
+            held = boundary.project(held, factor)
+    return held
+
+
+@ti.kernel
+def momentum_to_velocity(sim: ti.template(), field: ti.template(), factor: float):
+    """v_i = (mv)_i / m_i and boundaries, for momentum that is mapped apart from force (usf, and musl's second map)."""
+    for i in ti.grouped(sim.nodes.mass):
+        m = sim.nodes.mass[i]
+        v = ti.Vector.zero(float, sim.dim)
+        if m > SMALL_MASS * sim.density * sim.grid.dx**sim.dim:
+            v = hold(sim, i, field[i] / m, factor)
+        field[i] = v
+
+
+@ti.kernel
+def update_nodes(sim: ti.template(), divide: ti.template(), dt: float, factor: float):
+    """v_i <- v_i + dt (f_i/m_i + b), then boundaries, whose impulses and work go to the ledger.
+
+    `divide`: v still holds momentum. Afterwards f holds the velocity change of the step.
+    """
+    nodes, ledger = sim.nodes, sim.ledger
+    for i in ti.grouped(nodes.mass):
+        m = nodes.mass[i]
+        v, dv = ti.Vector.zero(float, sim.dim), ti.Vector.zero(float, sim.dim)
+        if m > SMALL_MASS * sim.density * sim.grid.dx**sim.dim:
+            v_old = nodes.v[i]
+            if ti.static(divide):
+                v_old /= m
+            v = v_old + dt * nodes.f[i] / m
+            if ti.static(sim.heavy):
+                v += dt * ti.Vector(sim.acceleration)
+            for b, boundary in ti.static(enumerate(sim.boundaries)):
+                if boundary.holds(sim.grid.position(i), sim.grid.dx):
+                    held = boundary.project(v, factor)
+                    impulse = ti.cast(m * (held - v), ti.f64)
+                    ledger.impulse[b] += impulse
+                    ledger.work[b] += impulse.dot(ti.cast(held, ti.f64))
+                    v = held
+            dv = v - v_old
+        nodes.v[i] = v
+        nodes.f[i] = dv
+        if ti.static(nodes.remap):
+            nodes.w[i] = ti.Vector.zero(float, sim.dim)
+
+
+@ti.func
+def velocity_to_particle(sim: ti.template(), p, w, xi, base, v_i: ti.template(), dv_i: ti.template()):
+    """New particle velocity (and affine matrix) from node velocities [stencil, dim]; returns it and v_pic."""
+    particles = sim.particles
+    v_pic, dv = ti.Vector.zero(float, sim.dim), ti.Vector.zero(float, sim.dim)
+    B = ti.Matrix.zero(float, sim.dim, sim.dim)
+    for k, offset in ti.static(enumerate(sim.stencil)):
+        w_ip = tensor_weight(w, offset)
+        for d in ti.static(range(sim.dim)):
+            v_pic[d] += w_ip * v_i[k, d]
+            dv[d] += w_ip * dv_i[k, d]
+            if ti.static(particles.affine):
+                for e in ti.static(range(sim.dim)):
+                    B[d, e] += w_ip * v_i[k, d] * (offset[e] - (xi[e] - base[e]))
+    v_p = sim.transfer.to_particle(particles.v[p], v_pic, dv)
+    particles.v[p] = v_p
+    if ti.static(particles.affine):
+        D = spread(sim, w, xi - base)
+        for d, e in ti.static(ti.ndrange(sim.dim, sim.dim)):
+            B[d, e] *= sim.grid.inv_dx / D[e]
+        particles.C[p] = B
+    return v_p, v_pic
+
+
+@ti.func
+def move(sim: ti.template(), p, v_pic, dt, slot):
+    """x_p <- x_p + dt v_pic, and the work of the body force."""
+    particles, ledger = sim.particles, sim.ledger
+    particles.u[p] += dt * v_pic
+    if ti.static(sim.heavy):
+        power = v_pic.dot(ti.Vector(sim.acceleration)) * sim.density * particles.volume[p]
+        ledger.body_work[slot] += ti.cast(dt * power, ti.f64)
+
+
+@ti.func
+def record_failure(sim: ti.template(), p, mode, extremes, released, time):
+    particles, events = sim.particles, sim.events
+    e = ti.atomic_add(events.count[None], 1)
+    events.time[e] = time
+    events.x[e] = particles.reference[p] + particles.u[p]
+    events.sigma_1[e], events.sigma_3[e] = extremes[0], extremes[1]
+    events.released[e] = released
+    events.mode[e] = mode
+    events.id[e] = particles.id[p]
+
+
+@ti.func
+def update_stress(sim: ti.template(), p, L, dt, time, slot):
+    """Elastic step, then the failure check of the paper: every particle, every step, tension first.
+
+    A failed particle keeps s = 0 and a pressure from total J; it has no artificial viscosity (paper sec. 3.2).
+    Returns the energy that viscosity took [J].
+    """
+    particles, ledger, rock = sim.particles, sim.ledger, sim.rock
+    bulk = ti.static(rock.elasticity.bulk)
+    J = particles.J[p] * (ti.Matrix.identity(float, sim.dim) + dt * L).determinant()
+    particles.J[p] = J
+    failed = False
+    if ti.static(particles.breaks):
+        failed = particles.mode[p] != 0
+    q, lost = 0.0, 0.0
+    if not failed:
+        sigma = rock.elasticity.stress(particles.sigma[p], midpoint_gradient(dt * L))
+        if ti.static(particles.breaks):
+            extremes = extreme_principals(sigma)
+            mode = rock.criterion.mode(extremes[0], extremes[1])
+            if mode != 0:
+                failed = True
+                particles.mode[p] = mode
+                kept = pressure_energy(rock.after_failure.pressure(bulk, J), bulk, J)
+                released = particles.volume[p] * (J * rock.elasticity.energy(sigma) - kept)
+                ledger.released[slot] += ti.cast(released, ti.f64)
+                record_failure(sim, p, mode, extremes, released, time)
+        if ti.static(particles.viscous):
+            if not failed:
+                q = rock.viscosity.pressure(L.trace(), sim.density / J, sim.grid.dx, sim.wave_speed)
+                lost = -dt * q * L.trace() * particles.volume[p] * J
+        particles.sigma[p] = sigma
+    if ti.static(particles.breaks):
+        if failed:
+            pressure = rock.after_failure.pressure(bulk, J)
+            particles.sigma[p] = isotropic(-pressure, particles.sigma.n)
+    if ti.static(particles.viscous):
+        particles.q[p] = q
+    return lost
+
+
+@ti.func
+def remap_span(sim: ti.template(), start, stop):
+    """musl: move velocity to particles and map their new momentum back with the same weights, in one pass."""
+    particles, nodes, grid = sim.particles, sim.nodes, sim.grid
+    v_i, dv_i = ti.Matrix.zero(float, sim.size, sim.dim), ti.Matrix.zero(float, sim.size, sim.dim)
+    mv = ti.Matrix.zero(float, sim.size, sim.dim)
+    current = ti.Vector.zero(int, sim.dim) - 1
+    for p in range(start, stop):
+        xi = grid.local(particles.reference[p] + particles.u[p])
+        base = grid.base(xi, sim.shape)
+        if (base != current).any():
+            if current[0] >= 0:
+                scatter(sim, nodes.w, current, mv)
+            mv.fill(0.0)
+            v_i, dv_i = gather(sim, nodes.v, base), gather(sim, nodes.f, base)
+            current = base
+        w = fold_at_walls(sim.shape.weights(xi - base), base, grid.wall_lower, grid.wall_upper)
+        v_p, v_pic = velocity_to_particle(sim, p, w, xi, base, v_i, dv_i)
+        m_p = sim.density * particles.volume[p]
+        for k, offset in ti.static(enumerate(sim.stencil)):
+            v_ip = v_p
+            if ti.static(particles.affine):
+                v_ip += particles.C[p] @ ((base + ti.Vector(offset) - xi) * grid.dx)
+            for d in ti.static(range(sim.dim)):
+                mv[k, d] += tensor_weight(w, offset) * m_p * v_ip[d]
+    if current[0] >= 0:
+        scatter(sim, nodes.w, current, mv)
+
+
+@ti.kernel
+def g2p_remap(sim: ti.template()):
+    for colour in ti.static(range(sim.traversal.colours)):
+        for t in range(sim.traversal.items):
+            start, stop, slot = sim.traversal.span(t, colour)
+            if stop > start:
+                remap_span(sim, start, stop)
+
+
+@ti.func
+def g2p_span(
+    sim: ti.template(), start, stop, slot, velocity: ti.template(), position: ti.template(), stress: ti.template(),
+    dt, time,
+):  # fmt: skip
+    """Nodes to particles: velocity, position and stress, each if asked. Gradients come from nodes.w (nodes.v unless
+    musl), positions from nodes.v, all at the weights of the step's start."""
+    particles, nodes, grid = sim.particles, sim.nodes, sim.grid
+    v_i, dv_i = ti.Matrix.zero(float, sim.size, sim.dim), ti.Matrix.zero(float, sim.size, sim.dim)
+    w_i = ti.Matrix.zero(float, sim.size, sim.dim)
+    viscous = ti.cast(0.0, ti.f64)
+    current = ti.Vector.zero(int, sim.dim) - 1
+    for p in range(start, stop):
+        xi = grid.local(particles.reference[p] + particles.u[p])
+        base = grid.base(xi, sim.shape)
+        if (base != current).any():
+            if ti.static(position):
+                v_i = gather(sim, nodes.v, base)
+            if ti.static(velocity):
+                dv_i = gather(sim, nodes.f, base)
+            if ti.static(stress):
+                w_i = gather(sim, nodes.w, base)
+            current = base
+        w, dw = weights_at(sim, xi, base)
+        if ti.static(velocity):
+            v_p, v_pic = velocity_to_particle(sim, p, w, xi, base, v_i, dv_i)
+            move(sim, p, v_pic, dt, slot)
+        elif ti.static(position):
+            v_pic = ti.Vector.zero(float, sim.dim)
+            for k, offset in ti.static(enumerate(sim.stencil)):
+                for d in ti.static(range(sim.dim)):
+                    v_pic[d] += tensor_weight(w, offset) * v_i[k, d]
+            move(sim, p, v_pic, dt, slot)
+        if ti.static(stress):
+            L = ti.Matrix.zero(float, sim.dim, sim.dim)
+            for k, offset in ti.static(enumerate(sim.stencil)):
+                dw_ip = tensor_gradient(w, dw, offset, grid.inv_dx)
+                for d, e in ti.static(ti.ndrange(sim.dim, sim.dim)):
+                    L[d, e] += w_i[k, d] * dw_ip[e]
+            viscous += ti.cast(update_stress(sim, p, L, dt, time, slot), ti.f64)
+    if ti.static(stress and particles.viscous):
+        sim.ledger.viscous[slot] += viscous
+
+
+@ti.kernel
+def g2p(
+    sim: ti.template(), velocity: ti.template(), position: ti.template(), stress: ti.template(),
+    dt: float, time: ti.f64,
+):  # fmt: skip
+    for colour in ti.static(range(sim.traversal.colours)):
+        for t in range(sim.traversal.items):
+            start, stop, slot = sim.traversal.span(t, colour)
+            if stop > start:
+                g2p_span(sim, start, stop, slot, velocity, position, stress, dt, time)

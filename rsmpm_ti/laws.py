@@ -1,0 +1,237 @@
+"""What rock does: elasticity, failure criteria, laws after failure, artificial viscosity.
+
+Sign convention, stated once: tension positive, sigma is Cauchy stress [Pa], sigma_1 >= sigma_3. A pressure p is
+compression positive. J = det F is tracked from the start of the run, so an opened crack carries nothing until its
+faces meet again.
+"""
+
+import math
+from dataclasses import dataclass
+
+import taichi as ti
+
+from rsmpm_ti.errors import refuse
+from rsmpm_ti.tensors import double_contraction, isotropic, rotate, symmetric, trace
+
+
+def _positive(owner: str, **values: float) -> None:
+    for name, value in values.items():
+        if not (math.isfinite(value) and value > 0.0):
+            raise refuse(f"{owner}.{name}", value, "a positive finite number")
+
+
+@ti.data_oriented
+@dataclass(frozen=True, kw_only=True)
+class Hooke:
+    """Isotropic linear elasticity with objective rotation.  E [Pa], nu [-].
+
+    sigma <- R sigma R^T + lambda tr(d_eps) 1 + 2 mu d_eps, R of Hughes & Winget (1980): the invariants of a spinning
+    stressed particle stay constant, where the explicit Jaumann form grows them by exp(8 pi^2/n) per turn of n steps.
+    """
+
+    E: float
+    nu: float
+
+    def __post_init__(self):
+        _positive("elasticity", E=self.E)
+        if not -1.0 < self.nu < 0.5:
+            raise refuse("elasticity.nu", self.nu, "in (-1, 0.5)", "at 0.5 the wave speed is infinite; use 0.499")
+
+    @property
+    def lam(self) -> float:
+        return self.E * self.nu / ((1.0 + self.nu) * (1.0 - 2.0 * self.nu))
+
+    @property
+    def mu(self) -> float:
+        return self.E / (2.0 * (1.0 + self.nu))
+
+    @property
+    def bulk(self) -> float:
+        return self.E / (3.0 * (1.0 - 2.0 * self.nu))
+
+    @property
+    def constrained(self) -> float:
+        """P-wave modulus lambda + 2 mu [Pa]."""
+        return self.lam + 2.0 * self.mu
+
+    @property
+    def plane_strain_modulus(self) -> float:
+        return self.E / (1.0 - self.nu**2)
+
+    @property
+    def plane_strain_ratio(self) -> float:
+        """Lateral over axial strain of a free-sided plane-strain specimen."""
+        return self.nu / (1.0 - self.nu)
+
+    @ti.func
+    def stress(self, sigma, G):
+        """New packed stress from the step's midpoint displacement gradient G, dim x dim."""
+        d_eps = symmetric(G)
+        return rotate(sigma, G) + isotropic(self.lam * trace(d_eps), sigma.n) + 2.0 * self.mu * d_eps
+
+    @ti.func
+    def energy(self, sigma):
+        """Strain energy per volume [J/m^3]: sigma:sigma/(4 mu) - nu tr(sigma)^2/(2 E)."""
+        return double_contraction(sigma, sigma) / (4.0 * self.mu) - self.nu * trace(sigma) ** 2 / (2.0 * self.E)
+
+
+@ti.data_oriented
+@dataclass(frozen=True, kw_only=True)
+class MohrCoulomb:
+    """Tension cut-off first, then Mohr-Coulomb, on the extremes of all three principal stresses (paper eq. 11, 12).
+
+    tension: sigma_1 >= sigma_t.  shear: (sigma_1 - sigma_3)/2 + (sigma_1 + sigma_3)/2 sin(phi) >= c cos(phi).
+    cohesion, tensile_strength [Pa]; friction_angle [degrees].
+    """
+
+    cohesion: float
+    friction_angle: float
+    tensile_strength: float
+
+    breaks = True
+
+    def __post_init__(self):
+        _positive("criterion", cohesion=self.cohesion, tensile_strength=self.tensile_strength)
+        if not 0.0 <= self.friction_angle < 90.0:
+            raise refuse("criterion.friction_angle", self.friction_angle, "in [0, 90) degrees")
+        if self.tensile_strength > self.apex:
+            raise refuse(
+                "criterion.tensile_strength",
+                self.tensile_strength,
+                f"at most the apex of the Mohr-Coulomb cone, c cot(phi) = {self.apex:.6g} Pa",
+                "beyond it the cut-off would never govern",
+            )
+
+    @property
+    def sin_phi(self) -> float:
+        return math.sin(math.radians(self.friction_angle))
+
+    @property
+    def c_cos_phi(self) -> float:
+        return self.cohesion * math.cos(math.radians(self.friction_angle))
+
+    @property
+    def apex(self) -> float:
+        return self.c_cos_phi / self.sin_phi if self.friction_angle > 0.0 else math.inf
+
+    @property
+    def ucs(self) -> float:
+        """Uniaxial compressive strength 2 c cos(phi)/(1 - sin(phi)) [Pa]."""
+        return 2.0 * self.c_cos_phi / (1.0 - self.sin_phi)
+
+    @ti.func
+    def mode(self, sigma_1, sigma_3):
+        """0 intact, 1 tension, 2 shear."""
+        mode = 0
+        if sigma_1 >= self.tensile_strength:
+            mode = 1
+        elif 0.5 * (sigma_1 - sigma_3) + 0.5 * (sigma_1 + sigma_3) * self.sin_phi >= self.c_cos_phi:
+            mode = 2
+        return mode
+
+
+@ti.data_oriented
+@dataclass(frozen=True, kw_only=True)
+class Unbreakable:
+    """No failure: for verification against elastic solutions (`--elastic`)."""
+
+    breaks = False
+
+    @ti.func
+    def mode(self, sigma_1, sigma_3):
+        return 0
+
+
+@ti.data_oriented
+@dataclass(frozen=True, kw_only=True)
+class CompressionOnly:
+    """Choice 1 of the paper, sec. 3.2: a failed particle is a fluid without tension, p = max(K (1 - J), 0)."""
+
+    @ti.func
+    def pressure(self, bulk, J):
+        return ti.max(bulk * (1.0 - J), 0.0)
+
+
+@ti.data_oriented
+@dataclass(frozen=True, kw_only=True)
+class Void:
+    """Choice 2 of the paper, sec. 3.2: a failed particle carries nothing; only its mass stays."""
+
+    @ti.func
+    def pressure(self, bulk, J):
+        return 0.0 * J
+
+
+@ti.data_oriented
+@dataclass(frozen=True, kw_only=True)
+class Clipped:
+    """Choice 3 of the paper, sec. 3.2: p = clip(K (1 - J), -tension_limit, compression_limit), both limits [Pa]."""
+
+    tension_limit: float
+    compression_limit: float
+
+    def __post_init__(self):
+        for name in ("tension_limit", "compression_limit"):
+            if not getattr(self, name) >= 0.0:
+                raise refuse(f"after_failure.{name}", getattr(self, name), "zero or more, in Pa")
+
+    @ti.func
+    def pressure(self, bulk, J):
+        return ti.min(ti.max(bulk * (1.0 - J), -self.tension_limit), self.compression_limit)
+
+
+@ti.func
+def pressure_energy(p, bulk, J):
+    """Energy stored by a pressure p(J) that is K (1 - J) up to a cap and the cap beyond it, per initial volume."""
+    return p * (1.0 - J) - 0.5 * p * p / bulk
+
+
+@ti.data_oriented
+@dataclass(frozen=True, kw_only=True)
+class BulkViscosity:
+    """q = rho L^2 c1 d^2 - c2 rho L c d in compression (d = tr grad v < 0), added as -q to the normal stresses.
+
+    von Neumann & Richtmyer (1950) with Landshoff's linear term; constants as in MPM3D. c1 multiplies L^2 directly.
+    """
+
+    c1: float = 1.5
+    c2: float = 0.06
+
+    def __post_init__(self):
+        for name in ("c1", "c2"):
+            if not getattr(self, name) >= 0.0:
+                raise refuse(f"viscosity.{name}", getattr(self, name), "zero or more")
+
+    acts = True
+
+    @ti.func
+    def pressure(self, rate, density, length, wave_speed):
+        d = ti.min(rate, 0.0)
+        return density * length * d * (self.c1 * length * d - self.c2 * wave_speed)
+
+
+@ti.data_oriented
+@dataclass(frozen=True, kw_only=True)
+class NoViscosity:
+    """No artificial viscosity: the particles then hold no field for it."""
+
+    acts = False
+
+
+@ti.data_oriented
+@dataclass(frozen=True, kw_only=True)
+class Rock:
+    """One rock: density [kg/m^3] and the four laws it is made of."""
+
+    density: float
+    elasticity: Hooke
+    criterion: MohrCoulomb | Unbreakable
+    after_failure: CompressionOnly | Void | Clipped = CompressionOnly()
+    viscosity: BulkViscosity | NoViscosity = BulkViscosity()
+
+    def __post_init__(self):
+        _positive("rock", density=self.density)
+
+    def wave_speed(self, time_scale: float = 1.0) -> float:
+        """P-wave speed c_p = sqrt((lambda + 2 mu)/rho) [m/s], with the density scaled by time_scale^2."""
+        return math.sqrt(self.elasticity.constrained / self.density) / time_scale

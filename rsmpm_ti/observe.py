@@ -1,0 +1,143 @@
+"""What is seen of a run while it goes: history rows, failure events, snapshots, and the guard that stops it."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from rsmpm_ti.errors import UnstableRun
+from rsmpm_ti.measure import Survey
+from rsmpm_ti.snapshot import HISTORY_COLUMNS, Snapshot
+from rsmpm_ti.state import Simulation
+from rsmpm_ti.stepper import Clock
+
+J_BOUNDS = (0.05, 20.0)
+"""A particle squeezed or stretched beyond these is no longer rock; the run has become unstable."""
+
+
+@dataclass(frozen=True)
+class EventTable:
+    """Failure events in the order of time. Shapes [e], x [e, dim]; SI; mode 1 tension, 2 shear."""
+
+    time: np.ndarray
+    x: np.ndarray
+    mode: np.ndarray
+    sigma_1: np.ndarray
+    sigma_3: np.ndarray
+    released: np.ndarray
+    id: np.ndarray
+
+    def __len__(self) -> int:
+        return len(self.time)
+
+
+def read_events(sim: Simulation) -> EventTable:
+    """All events so far, sorted by time, then particle id, so that threads do not show."""
+    events, n = sim.events, sim.events.count[None]
+    columns = {
+        name: getattr(events, name).to_numpy()[:n] if n else getattr(events, name).to_numpy()[:0]
+        for name in ("time", "x", "mode", "sigma_1", "sigma_3", "released", "id")
+    }
+    order = np.lexsort((columns["id"], columns["time"]))
+    return EventTable(**{name: column[order] for name, column in columns.items()})
+
+
+def take_snapshot(sim: Simulation, time: float) -> Snapshot:
+    """Copy the particles out, in the order of their ids."""
+    particles = sim.particles
+    order = np.argsort(particles.id.to_numpy(), kind="stable")
+    n = particles.count
+
+    def column(field):
+        return field.to_numpy()[order].astype(np.float64)
+
+    u, packed = column(particles.u), column(particles.sigma)
+    sigma = np.zeros((n, 3, 3))
+    places = ((0, 0), (1, 1), (2, 2), (0, 1), (1, 2), (2, 0))
+    for k in range(packed.shape[1]):
+        a, b = places[k]
+        sigma[:, a, b] = sigma[:, b, a] = packed[:, k]
+    principal = np.linalg.eigvalsh(np.nan_to_num(sigma))
+    mode, failure_time = np.zeros(n, dtype=np.int8), np.full(n, np.nan)
+    if particles.breaks:
+        mode = particles.mode.to_numpy()[order].astype(np.int8)
+        events = read_events(sim)
+        failure_time[events.id] = events.time
+    return Snapshot(
+        time=time,
+        x=column(particles.reference) + u,
+        displacement=u,
+        velocity=column(particles.v),
+        sigma=sigma,
+        sigma_1=principal[:, 2],
+        sigma_3=principal[:, 0],
+        volume=column(particles.volume) * column(particles.J),
+        failure_mode=mode,
+        failure_time=failure_time,
+    )
+
+
+class History:
+    """The rows of history.csv. Platen stress is the mean over the steps since the row before."""
+
+    def __init__(self, sim: Simulation, clock: Clock, start: Survey):
+        self._sim, self._clock = sim, clock
+        self.rows: list[tuple[float, ...]] = []
+        self._energy_start = start.kinetic + start.elastic
+        self._impulse = sim.ledger.impulse.to_numpy()
+        self._time = clock.time
+        loading = sim.scene.loading
+        self._platens = None
+        if loading.platens is not None and loading.width is not None:
+            self._platens = tuple(loading.boundaries.index(platen) for platen in loading.platens)
+
+    @property
+    def energy_start(self) -> float:
+        """Kinetic and elastic energy with which the run started [J]."""
+        return self._energy_start
+
+    def record(self, survey: Survey) -> None:
+        sim, clock, ledger = self._sim, self._clock, self._sim.ledger
+        impulse = ledger.impulse.to_numpy()
+        bottom = top = np.nan
+        if self._platens is not None and clock.time > self._time:
+            axis = sim.scene.loading.platens[0].axis
+            force = (impulse - self._impulse)[:, axis] / (clock.time - self._time) / sim.scene.loading.width
+            # the lower plate pushes the specimen along +axis in compression, the upper one along -axis
+            bottom, top = force[self._platens[0]], -force[self._platens[1]]
+        work = ledger.work.to_numpy().sum() + ledger.body_work.to_numpy().sum()
+        lost = ledger.viscous.to_numpy().sum() + ledger.released.to_numpy().sum()
+        mode = sim.events.mode.to_numpy()[: sim.events.count[None]]
+        self.rows.append(
+            (
+                clock.time, clock.strain, top, bottom, survey.kinetic, survey.elastic, lost, work,
+                float(np.sum(mode == 1)), float(np.sum(mode == 2)), clock.dt,
+            )
+        )  # fmt: skip
+        self._impulse, self._time = impulse, clock.time
+
+    def table(self) -> np.ndarray:
+        """Structured array with the fields HISTORY_COLUMNS."""
+        return np.array(self.rows, dtype=[(name, np.float64) for name in HISTORY_COLUMNS])
+
+    @property
+    def failed(self) -> float:
+        return self.rows[-1][8] + self.rows[-1][9] if self.rows else 0.0
+
+
+def guard(sim: Simulation, clock: Clock, survey: Survey) -> None:
+    """Stop a run whose numbers mean nothing any more, with step, place, likely cause and remedy."""
+    where = ""
+    if survey.sick:
+        reference = sim.particles.reference.to_numpy()[np.flatnonzero(sim.particles.id.to_numpy() == survey.sick_id)[0]]
+        where = f" (one started at {np.array2string(1e3 * reference, precision=3)} mm)"
+    at = f"at step {clock.step}, t = {clock.time:.6g} s"
+    if survey.sick:
+        raise UnstableRun(
+            f"{survey.sick} particles are not finite or left the domain {at}{where}; likely cause: a time step too "
+            f"long for this loading, or fragments flying off; lower schedule.cfl, or enlarge the domain"
+        )
+    if survey.J_min < J_BOUNDS[0] or survey.J_max > J_BOUNDS[1]:
+        raise UnstableRun(
+            f"a particle has J = {survey.J_min:.3g} .. {survey.J_max:.3g} {at}, outside {J_BOUNDS}; likely cause: "
+            f"an unstable step or a collapse beyond the law; lower schedule.cfl or end the run earlier"
+        )

@@ -1,0 +1,132 @@
+"""Regions of space that bodies fill: `contains(x)` in NumPy. Lengths in metres, angles in degrees.
+
+Combine with `Union` and `Difference`. A slit is a region like any other; what makes it a flaw is that the particles
+in it are removed and that its faces really separate, which `state.slit_bridge` checks.
+"""
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from rsmpm_ti.errors import refuse
+
+
+def _positive(name: str, value: float) -> None:
+    if not (math.isfinite(value) and value > 0.0):
+        raise refuse(name, value, "a positive finite length in metres")
+
+
+@dataclass(frozen=True, kw_only=True)
+class Box:
+    """Axis-aligned box between two corners."""
+
+    lower: tuple[float, ...]
+    upper: tuple[float, ...]
+
+    def __post_init__(self):
+        if len(self.lower) != len(self.upper) or not all(a < b for a, b in zip(self.lower, self.upper, strict=False)):
+            raise refuse("box.upper", self.upper, f"above box.lower = {self.lower} on every axis")
+
+    def contains(self, x: np.ndarray) -> np.ndarray:
+        """x [n, dim] -> bool [n]."""
+        return np.all((x > np.array(self.lower)) & (x < np.array(self.upper)), axis=1)
+
+    def bounds(self) -> tuple[np.ndarray, np.ndarray]:
+        return np.array(self.lower), np.array(self.upper)
+
+
+@dataclass(frozen=True, kw_only=True)
+class Disc:
+    """Disc in 2D, ball in 3D."""
+
+    centre: tuple[float, ...]
+    radius: float
+
+    def __post_init__(self):
+        _positive("disc.radius", self.radius)
+
+    def contains(self, x: np.ndarray) -> np.ndarray:
+        return np.sum((x - np.array(self.centre)) ** 2, axis=1) < self.radius**2
+
+    def bounds(self) -> tuple[np.ndarray, np.ndarray]:
+        return np.array(self.centre) - self.radius, np.array(self.centre) + self.radius
+
+
+@dataclass(frozen=True, kw_only=True)
+class Slit:
+    """A straight flaw: a rectangle `length` x `width` at `angle` degrees from +x, through the thickness in 3D."""
+
+    centre: tuple[float, ...]
+    length: float
+    width: float
+    angle: float
+
+    def __post_init__(self):
+        _positive("slit.length", self.length)
+        _positive("slit.width", self.width)
+        if not math.isfinite(self.angle):
+            raise refuse("slit.angle", self.angle, "a finite angle in degrees")
+        if self.width > self.length:
+            raise refuse("slit.width", self.width, f"at most slit.length = {self.length} m")
+
+    @property
+    def direction(self) -> np.ndarray:
+        """Unit vector along the flaw in the x-y plane, [2]."""
+        return np.array([math.cos(math.radians(self.angle)), math.sin(math.radians(self.angle))])
+
+    def frame(self, x: np.ndarray) -> np.ndarray:
+        """Coordinates along and across the flaw [m]; x [n, dim] -> [n, 2]."""
+        t = self.direction
+        d = x[:, :2] - np.array(self.centre[:2])
+        return np.stack([d @ t, d @ np.array([-t[1], t[0]])], axis=1)
+
+    def contains(self, x: np.ndarray) -> np.ndarray:
+        s = np.abs(self.frame(x))
+        return (s[:, 0] < 0.5 * self.length) & (s[:, 1] < 0.5 * self.width)
+
+    def bounds(self) -> tuple[np.ndarray, np.ndarray]:
+        t = np.abs(self.direction)
+        half = 0.5 * (self.length * t + self.width * t[::-1])
+        return np.array(self.centre[:2]) - half, np.array(self.centre[:2]) + half
+
+
+@dataclass(frozen=True, kw_only=True)
+class Union:
+    """What lies in any of the parts."""
+
+    parts: tuple
+
+    def contains(self, x: np.ndarray) -> np.ndarray:
+        return np.any([part.contains(x) for part in self.parts], axis=0)
+
+    def bounds(self) -> tuple[np.ndarray, np.ndarray]:
+        lower, upper = zip(*(part.bounds() for part in self.parts), strict=True)
+        return np.min(lower, axis=0), np.max(upper, axis=0)
+
+
+@dataclass(frozen=True, kw_only=True)
+class Difference:
+    """What lies in `whole` and in none of `removed`."""
+
+    whole: Box | Disc | Union
+    removed: tuple
+
+    def contains(self, x: np.ndarray) -> np.ndarray:
+        inside = self.whole.contains(x)
+        for part in self.removed:
+            inside &= ~part.contains(x)
+        return inside
+
+    def bounds(self) -> tuple[np.ndarray, np.ndarray]:
+        return self.whole.bounds()
+
+
+def slits_of(region) -> tuple[Slit, ...]:
+    """Every slit cut from a region, however nested."""
+    if isinstance(region, Union):
+        return tuple(slit for part in region.parts for slit in slits_of(part))
+    if isinstance(region, Difference):
+        cuts = tuple(part for part in region.removed if isinstance(part, Slit))
+        return slits_of(region.whole) + cuts
+    return ()

@@ -1,0 +1,169 @@
+"""The command line: python -m rsmpm_ti.scene NAME [options]. Exit status 0 done, 2 bad input, 3 unstable."""
+
+import argparse
+import sys
+from dataclasses import replace
+from pathlib import Path
+
+from rsmpm_ti.errors import SceneError, UnstableRun
+from rsmpm_ti.library import available, find, keywords_of, load_scene, scene_name
+from rsmpm_ti.spec import Scene
+
+PARTICLE_STEPS_PER_S = 8e6
+"""What `--check` assumes for its estimate: measured for quadratic B-splines on two cores; see README."""
+
+BYTES_PER_PARTICLE, BYTES_PER_NODE = 200, 72
+"""What `--check` assumes for memory: fields of a 2D scene with viscosity and failure, f64."""
+
+
+def parser() -> argparse.ArgumentParser:
+    p = argparse.ArgumentParser(
+        prog="python -m rsmpm_ti.scene",
+        description="Load a rock specimen, break it, and write frames, movie, curve, events and particle data.",
+    )
+    p.add_argument("scene", nargs="?", help="scene name, or path of a .py or recorded scene.json")
+    p.add_argument("--out", metavar="DIR", help="output folder (default renders/<scene>)")
+    p.add_argument("--set", dest="settings", action="append", default=[], metavar="NAME=VALUE",
+                   help="a keyword of the scene (flaw_angle=30) or a field of it (schedule.cfl=0.3)")  # fmt: skip
+    p.add_argument("--quick", action="store_true", help="coarse grid and wider slit")
+    p.add_argument("--elastic", action="store_true", help="switch failure off")
+    p.add_argument("--frames", type=int, metavar="N", help="number of equally spaced frames")
+    p.add_argument("--no-movie", action="store_true", help="frames only")
+    p.add_argument("--painter", choices=("raster", "ggui"), help="ggui needs Vulkan (a GPU, or Mesa's lavapipe)")
+    p.add_argument("--arch", choices=("cpu", "cuda"), default="cpu")
+    p.add_argument("--precision", choices=("f64", "f32"), default="f64")
+    p.add_argument("--threads", type=int, metavar="N", help="CPU threads (default: all)")
+    p.add_argument("--list", action="store_true", help="list the scenes and their keywords")
+    p.add_argument("--check", action="store_true", help="validate, print what would be run, and stop")
+    return p
+
+
+def build(options: argparse.Namespace) -> Scene:
+    """The scene that the options ask for."""
+    settings = {}
+    for item in options.settings:
+        name, separator, value = item.partition("=")
+        if not separator or not name.strip():
+            raise SceneError(f"--set {item!r} is refused: write name=value")
+        settings[name.strip()] = value.strip()
+    scene = load_scene(options.scene, quick=options.quick, settings=settings)
+    output = scene.output
+    if options.frames is not None:
+        output = replace(output, frames=options.frames)
+    if options.no_movie:
+        output = replace(output, movie=False)
+    if options.painter:
+        output = replace(output, painter=options.painter)
+    scene = replace(scene, output=output)
+    return scene.elastic() if options.elastic else scene
+
+
+def describe(scene: Scene) -> str:
+    """What would be run, as `--check` prints it."""
+    count = sum(len(x) for x in scene.particles())
+    nodes = 1
+    for a, b in zip(scene.domain.lower, scene.domain.upper, strict=True):
+        nodes *= round((b - a) / scene.domain.dx) + 7
+    memory = (count * BYTES_PER_PARTICLE + nodes * BYTES_PER_NODE) / 1e6
+    seconds = count * scene.steps / PARTICLE_STEPS_PER_S
+    rows = (
+        ("scene", scene.title),
+        ("particles", f"{count}"),
+        ("grid nodes", f"{nodes} ({scene.domain.grid}), dx = {1e3 * scene.domain.dx:g} mm"),
+        ("memory", f"about {memory:.0f} MB"),
+        ("scheme", f"{scene.order}, {type(scene.shape).__name__}, {type(scene.transfer).__name__}"),
+        ("dt", f"{scene.dt:.4g} s (mass scaling by time_scale = {scene.loading.time_scale:g})"),
+        ("steps", f"{scene.steps} to t = {1e3 * scene.t_end:.4g} ms"),
+        ("estimate", f"about {seconds:.0f} s of solving, and painting"),
+    )
+    return "\n".join(f"{name:<12}{value}" for name, value in rows)
+
+
+def list_scenes() -> str:
+    lines = []
+    for name, path in available().items():
+        keywords = ", ".join(f"{k}={v:g}" if isinstance(v, float) else f"{k}={v}" for k, v in keywords_of(path).items())
+        lines.append(f"{name:<10} {keywords}")
+    return "\n".join(lines)
+
+
+def main(arguments: list[str] | None = None) -> int:
+    options = parser().parse_args(arguments)
+    try:
+        if options.list:
+            print(list_scenes())
+            return 0
+        if not options.scene:
+            raise SceneError(f"name a scene: {', '.join(available())} (or use --list)")
+        find(options.scene)
+        scene = build(options)
+        if options.check:
+            print(describe(scene))
+            return 0
+        return run(scene, options)
+    except SceneError as error:
+        print(f"rsmpm_ti: {error}", file=sys.stderr)
+        return 2
+    except UnstableRun as error:
+        print(f"rsmpm_ti: the run became unstable: {error}", file=sys.stderr)
+        return 3
+
+
+def run(scene: Scene, options: argparse.Namespace) -> int:
+    """Run with a progress bar and print what was found."""
+    from rich.console import Console
+    from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn, TimeRemainingColumn
+
+    from rsmpm_ti.simulate import simulate
+
+    name = scene_name(options.scene)
+    out = Path(options.out) if options.out else Path("renders") / name
+    console = Console(stderr=True)
+    columns = (TextColumn("{task.description}"), BarColumn(), TimeElapsedColumn(), TimeRemainingColumn())
+    with Progress(*columns, console=console, transient=True) as bar:
+        task = bar.add_task("compiling", total=1.0)
+
+        def show(p):
+            speed = p.particle_steps_per_s / 1e6
+            text = (
+                f"{1e3 * p.time:.3f} ms  strain {100 * p.strain:.4f} %  {p.stress / 1e6:.3f} MPa  "
+                f"failed {p.failed_tension}+{p.failed_shear}  {speed:.1f} M/s"
+            )
+            bar.update(task, completed=p.share, description=text)
+
+        result = simulate(
+            scene, out=out, name=name, precision=options.precision, arch=options.arch, threads=options.threads,
+            progress=show,
+        )  # fmt: skip
+    print(report(result))
+    return 0
+
+
+def report(result) -> str:
+    """A run in a few lines."""
+    s = result.summary
+    lines = [
+        f"{s['particles']} particles, {s['steps']} steps in {s['wall_s']:.1f} s after {s['compile_s']:.1f} s of start-up "
+        f"({s['particle_steps_per_s'] / 1e6:.1f} M particle-steps/s)"
+    ]
+    if s["first_failure_stress_Pa"] is not None:
+        place = ", ".join(f"{1e3 * c:.2f}" for c in s["first_failure_position_m"])
+        lines.append(
+            f"first failure: {s['first_failure_mode']} at {s['first_failure_stress_Pa'] / 1e6:.3f} MPa, ({place}) mm"
+        )
+    if s["peak_stress_Pa"] is not None:
+        lines.append(
+            f"peak stress: {s['peak_stress_Pa'] / 1e6:.3f} MPa; failed {s['failed_tension']} in tension, {s['failed_shear']} in shear"
+        )
+    if s["platen_imbalance"] is not None:
+        lines.append(f"platen imbalance up to first failure: {100 * s['platen_imbalance']:.2f} %")
+        if s["platen_imbalance"] > 0.01:
+            lines.append("warning: above 1 % the loading is not quasi-static; lower loading.time_scale or the speed")
+    if result.stopped:
+        lines.append(f"stopped early: {result.stopped}; everything up to there is written")
+    lines.append(f"written to {result.out}")
+    return "\n".join(lines)
+
+
+if __name__ == "__main__":
+    sys.exit(main())

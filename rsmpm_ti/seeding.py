@@ -1,0 +1,144 @@
+"""Where particles start: a lattice in each cell, or a jittered one. NumPy only.
+
+Also the check that a slit's two faces really separate, which needs the particles but no kernel.
+"""
+
+import itertools
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from rsmpm_ti.errors import SceneError, refuse
+from rsmpm_ti.regions import Slit
+
+BRIDGE_LIMIT = 0.02
+"""Largest share of a full node's mass that both faces of a slit may have in common.
+
+A slit of two cells at 45 degrees on a lattice leaves 1/64 = 0.016 on its diagonal nodes with linear functions, which
+the static reference solution shows to be a flaw; one of one cell leaves 0.11 and is not.
+"""
+
+
+def _check_per_axis(value: int) -> None:
+    if not (isinstance(value, int) and 1 <= value <= 8):
+        raise refuse("seeding.particles_per_axis", value, "a whole number from 1 to 8")
+
+
+def _lattice(lower: np.ndarray, upper: np.ndarray, origin: np.ndarray, spacing: float) -> np.ndarray:
+    """Centres of the sub-cells of the background grid that overlap a box, first axis fastest, [n, dim]."""
+    axes = []
+    for a, b, o in zip(lower, upper, origin, strict=True):
+        first, last = math.floor((a - o) / spacing - 1e-6), math.ceil((b - o) / spacing + 1e-6)
+        axes.append(o + (np.arange(first, last) + 0.5) * spacing)
+    return np.stack([c.ravel(order="F") for c in np.meshgrid(*axes, indexing="ij")], axis=1)
+
+
+@dataclass(frozen=True, kw_only=True)
+class Lattice:
+    """`particles_per_axis` particles along each axis of a cell, at the centres of equal sub-cells."""
+
+    particles_per_axis: int = 2
+
+    def __post_init__(self):
+        _check_per_axis(self.particles_per_axis)
+
+    def points(self, region, origin: np.ndarray, dx: float) -> np.ndarray:
+        """Particle positions [m], [n, dim]."""
+        x = _lattice(*region.bounds(), origin, dx / self.particles_per_axis)
+        return x[region.contains(x)]
+
+
+@dataclass(frozen=True, kw_only=True)
+class Jittered:
+    """The lattice with every particle moved at random, so that cracks do not follow grid columns.
+
+    `amount` is the largest move along each axis as a fraction of the particle spacing; `seed` fixes it.
+    """
+
+    particles_per_axis: int = 2
+    amount: float = 0.35
+    seed: int = 1
+
+    def __post_init__(self):
+        _check_per_axis(self.particles_per_axis)
+        if not 0.0 <= self.amount < 0.5:
+            raise refuse("seeding.amount", self.amount, "in [0, 0.5)", "at 0.5 two particles can coincide")
+        if not (isinstance(self.seed, int) and self.seed >= 0):
+            raise refuse("seeding.seed", self.seed, "a whole number, zero or more")
+
+    def points(self, region, origin: np.ndarray, dx: float) -> np.ndarray:
+        """Particle positions [m], [n, dim]. Membership is decided before the move, so that faces stay smooth
+        in the mean and the number of particles does not depend on the seed; no particle enters a slit."""
+        spacing = dx / self.particles_per_axis
+        lattice = _lattice(*region.bounds(), origin, spacing)
+        lattice = lattice[region.contains(lattice)]
+        move = np.random.default_rng(self.seed).uniform(-self.amount, self.amount, lattice.shape) * spacing
+        moved = lattice + move
+        return np.where(region.contains(moved)[:, None], moved, lattice)
+
+
+def slit_bridge(x: np.ndarray, slit: Slit, shape, particles_per_axis: int, dx: float, origin: np.ndarray) -> float:
+    """Largest share of a full node's mass that both faces of a slit put on one node, away from the slit's ends.
+
+    x [n, 2] are the particles of the cut body. 0 means that no node sees both faces.
+    """
+    reach = (shape.width / 2.0) * dx
+    frame = slit.frame(x)
+    near = (np.abs(frame[:, 0]) < 0.5 * slit.length + 2.0 * reach) & (
+        np.abs(frame[:, 1]) < 0.5 * slit.width + 2.0 * reach
+    )
+    x, side = x[near, :2], frame[near, 1] > 0.0
+    base = np.floor((x - origin[:2]) / dx - shape.shift).astype(int)
+    n = tuple(base.max(axis=0) + shape.width) if len(base) else (1, 1)
+    mass = np.zeros((2, *n))
+    for offset in itertools.product(range(shape.width), repeat=2):
+        node = base + np.array(offset)
+        w = np.prod(shape.profile((x - origin[:2]) / dx - node), axis=1)
+        np.add.at(mass, (side.astype(int), node[:, 0], node[:, 1]), w)
+    share = mass.min(axis=0) / particles_per_axis**2
+    nodes = np.stack(np.meshgrid(*(np.arange(k) for k in n), indexing="ij"), axis=-1).reshape(-1, 2) * dx + origin[:2]
+    inner = np.abs(slit.frame(nodes)[:, 0]) < 0.5 * slit.length - math.sqrt(2.0) * reach
+    return float(share.ravel()[inner].max(initial=0.0))
+
+
+def check_slit(region, slit: Slit, seeding, shape, dx: float, origin: np.ndarray) -> None:
+    """Refuse a slit whose faces stay glued through shared nodes, naming a width that would do."""
+    bridge = _bridge_of_width(region, slit, slit.width, seeding, shape, dx, origin)
+    if bridge <= BRIDGE_LIMIT:
+        return
+    for cells in np.arange(1.0, 6.01, 0.25):
+        if (
+            cells * dx > slit.width
+            and _bridge_of_width(region, slit, cells * dx, seeding, shape, dx, origin) <= BRIDGE_LIMIT
+        ):
+            raise SceneError(
+                f"slit.width = {slit.width:.6g} m is refused: at {slit.angle:g} degrees its faces share grid nodes "
+                f"({100 * bridge:.1f} % of a node's mass, at most {100 * BRIDGE_LIMIT:g} % allowed), so it would be a "
+                f"weak inclusion and no flaw; use a width of at least {cells * dx:.6g} m ({cells:g} cells) or a finer dx"
+            )
+    raise SceneError(f"slit.width = {slit.width:.6g} m is refused: no width up to 6 cells separates its faces")
+
+
+def _bridge_of_width(region, slit: Slit, width: float, seeding, shape, dx: float, origin: np.ndarray) -> float:
+    """The bridge if this slit had another width, on a patch of intact material around it."""
+    trial = Slit(centre=slit.centre, length=slit.length, width=min(width, slit.length), angle=slit.angle)
+    lower, upper = (b[:2] for b in region.bounds())
+    low, high = trial.bounds()
+    patch = _Patch(lower=np.maximum(lower, low - 4 * dx), upper=np.minimum(upper, high + 4 * dx), slit=trial)
+    points = seeding.points(patch, origin[:2], dx)
+    return slit_bridge(points, trial, shape, seeding.particles_per_axis, dx, origin)
+
+
+class _Patch:
+    """Material around one slit in the x-y plane, bounded to keep the check cheap."""
+
+    def __init__(self, *, lower: np.ndarray, upper: np.ndarray, slit: Slit):
+        self._bounds, self._slit = (lower, upper), slit
+
+    def bounds(self):
+        return self._bounds
+
+    def contains(self, x: np.ndarray) -> np.ndarray:
+        lower, upper = self._bounds
+        return np.all((x > lower) & (x < upper), axis=1) & ~self._slit.contains(x)

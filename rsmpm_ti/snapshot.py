@@ -1,0 +1,47 @@
+"""What a run looks like from outside at one instant: plain NumPy, no Taichi."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+HISTORY_COLUMNS = (
+    "time_s",
+    "axial_strain",
+    "stress_top_Pa",
+    "stress_bottom_Pa",
+    "energy_kinetic_J",
+    "energy_elastic_J",
+    "energy_dissipated_J",
+    "work_J",
+    "failed_tension",
+    "failed_shear",
+    "dt_s",
+)
+"""Columns of `history.csv` and fields of the structured array `Result.history`, all float64.
+
+Strain and the two stresses are compression positive, as tests report them; energies are per metre of thickness in 2D.
+"""
+
+INTACT, TENSION, SHEAR = 0, 1, 2
+"""Values of `failure_mode`."""
+
+MODE_NAMES = ("intact", "tension", "shear")
+
+
+@dataclass(frozen=True)
+class Snapshot:
+    """Particles at one instant, in the order of their ids, which is the order in which they were seeded.
+
+    Shapes: n particles in dim dimensions. Stress is Cauchy, tension positive.
+    """
+
+    time: float  # [s]
+    x: np.ndarray  # current positions [m], [n, dim]
+    displacement: np.ndarray  # [m], [n, dim]
+    velocity: np.ndarray  # [m/s], [n, dim]
+    sigma: np.ndarray  # [Pa], [n, 3, 3]
+    sigma_1: np.ndarray  # largest (most tensile) principal stress [Pa], [n]
+    sigma_3: np.ndarray  # smallest principal stress [Pa], [n]
+    volume: np.ndarray  # current volume [m^dim], [n]
+    failure_mode: np.ndarray  # INTACT, TENSION or SHEAR, int8 [n]
+    failure_time: np.ndarray  # [s], NaN where intact, [n]

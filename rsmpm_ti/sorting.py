@@ -1,0 +1,57 @@
+"""Cell order: particles sorted by the base node of their stencil, refreshed only when too many have strayed."""
+
+import numpy as np
+import taichi as ti
+
+from rsmpm_ti.state import Simulation
+
+
+@ti.func
+def cell_key(sim: ti.template(), base):
+    """Row-major index of a base node: the sort key of cell order."""
+    key = base[0]
+    for d in ti.static(range(1, sim.dim)):
+        key = key * sim.grid.nodes[d] + base[d]
+    return key
+
+
+@ti.kernel
+def cell_keys(sim: ti.template()):
+    particles, grid = sim.particles, sim.grid
+    for p in particles.key:
+        particles.key[p] = cell_key(sim, grid.base(grid.local(particles.reference[p] + particles.u[p]), sim.shape))
+
+
+@ti.kernel
+def reorder(sim: ti.template()):
+    """Permute every particle field by particles.order, one component after another through the scratch array."""
+    particles = sim.particles
+    for component in ti.static(particles.real_components):
+        for p in particles.order:
+            particles.scratch[p] = component[particles.order[p]]
+        for p in particles.order:
+            component[p] = particles.scratch[p]
+    for component in ti.static(particles.whole_components):
+        for p in particles.order:
+            particles.key[p] = component[particles.order[p]]
+        for p in particles.order:
+            component[p] = particles.key[p]
+
+
+def sort_particles(sim: Simulation) -> None:
+    """Put particles into cell order; ties keep their order, so the result does not depend on threads."""
+    cell_keys(sim)
+    key = sim.particles.key.to_numpy()
+    order = np.argsort(key, kind="stable").astype(np.int32)
+    sim.particles.order.from_numpy(order)
+    reorder(sim)
+    cell_keys(sim)
+    sim.traversal.refresh(key[order] // int(np.prod(sim.grid.nodes[1:])))
+    sim.nodes.forget_empty()
+
+
+def particle_arrays(sim: Simulation) -> dict[str, np.ndarray]:
+    """Every stored particle component as it lies in memory: what a checkpoint holds."""
+    particles = sim.particles
+    real = {f"real_{k}": c.to_numpy() for k, c in enumerate(particles.real_components)}
+    return real | {f"whole_{k}": c.to_numpy() for k, c in enumerate(particles.whole_components)}

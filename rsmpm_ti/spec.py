@@ -1,0 +1,332 @@
+"""What a scene is: frozen data, checked once, here. Kernels trust it. SI units; angles in degrees.
+
+(`rsmpm_ti.scene` is the command line: it runs as `__main__`, and a dataclass defined there would exist twice.)
+"""
+
+import math
+from dataclasses import dataclass, field, replace
+
+import numpy as np
+
+from rsmpm_ti.boundaries import Fixed, Platen, Wall
+from rsmpm_ti.errors import SceneError, refuse
+from rsmpm_ti.laws import Rock, Unbreakable
+from rsmpm_ti.regions import slits_of
+from rsmpm_ti.seeding import Jittered, Lattice, check_slit
+from rsmpm_ti.shape import Gimp, Linear, QuadraticBSpline
+from rsmpm_ti.transfer import Apic, PicFlip
+
+PAPER_DT = 1.91e-5
+"""The time step the paper prints [s]; a hundred times what its grid allows (paper sec. 4.1)."""
+
+USL_CFL = 0.6
+"""Smallest stability limit of usl over offsets and shape functions other than linear, in units of dx/c_p."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Domain:
+    """The background grid: a box of cells of edge dx [m]; `grid` is 'dense', 'sparse' or 'auto' (by occupancy)."""
+
+    lower: tuple[float, ...]
+    upper: tuple[float, ...]
+    dx: float
+    grid: str = "dense"
+
+    def __post_init__(self):
+        if not (math.isfinite(self.dx) and self.dx > 0.0):
+            raise refuse("domain.dx", self.dx, "a positive cell size in metres")
+        if len(self.lower) not in (2, 3) or len(self.lower) != len(self.upper):
+            raise refuse("domain.upper", self.upper, "2 or 3 coordinates, as many as domain.lower")
+        if not all(
+            math.isfinite(a) and math.isfinite(b) and b - a >= self.dx
+            for a, b in zip(self.lower, self.upper, strict=True)
+        ):
+            raise refuse("domain.upper", self.upper, f"at least one cell above domain.lower = {self.lower}")
+        if self.grid not in ("dense", "sparse", "auto"):
+            raise refuse("domain.grid", self.grid, "'dense', 'sparse' or 'auto'")
+
+    @property
+    def dim(self) -> int:
+        return len(self.lower)
+
+
+@dataclass(frozen=True, kw_only=True)
+class Body:
+    """Material that fills a region. Initial velocity [m/s] and, in the x-y plane, spin [rad/s] about its centre."""
+
+    region: object
+    seeding: Lattice | Jittered = Lattice()
+    velocity: tuple[float, ...] | None = None
+    spin: float = 0.0
+
+
+@dataclass(frozen=True, kw_only=True)
+class Affine:
+    """Start with the velocity field of uniform straining between the platens: no first-wave shock."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Ramp:
+    """Start at rest; platens reach full speed after `time` [s] by a smooth step. At least 5 wave transits."""
+
+    time: float
+
+    def __post_init__(self):
+        if not (math.isfinite(self.time) and self.time > 0.0):
+            raise refuse("start.time", self.time, "a positive time in seconds")
+
+
+@dataclass(frozen=True, kw_only=True)
+class AtRest:
+    """Bodies keep their own initial velocity and platens move at full speed from the first step."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Loading:
+    """What drives the scene.
+
+    time_scale k multiplies the density by k^2 (mass scaling), so a quasi-static run takes 1/k of the steps.
+    `width` is the loaded length [m] (area [m^2] in 3D) by which platen forces become nominal stress.
+    body_force is an acceleration [m/s^2]; mass scaling leaves the force it makes unchanged.
+    """
+
+    boundaries: tuple[Platen | Wall | Fixed, ...] = ()
+    start: Affine | Ramp | AtRest = AtRest()
+    time_scale: float = 1.0
+    body_force: tuple[float, ...] | None = None
+    width: float | None = None
+
+    def __post_init__(self):
+        if not (math.isfinite(self.time_scale) and 1.0 <= self.time_scale <= 1000.0):
+            raise refuse("loading.time_scale", self.time_scale, "in [1, 1000]", "1 is the true density")
+        if self.width is not None and not (math.isfinite(self.width) and self.width > 0.0):
+            raise refuse("loading.width", self.width, "a positive length in metres")
+
+    @property
+    def platens(self) -> tuple[Platen, Platen] | None:
+        """(lower, upper) platen of the loading axis, if there are two that face each other."""
+        for lower in self.boundaries:
+            for upper in self.boundaries:
+                same_axis = isinstance(lower, Platen) and isinstance(upper, Platen) and lower.axis == upper.axis
+                if same_axis and (lower.side, upper.side) == ("lower", "upper"):
+                    return lower, upper
+        return None
+
+    @property
+    def height(self) -> float:
+        """Distance between the platens [m]."""
+        lower, upper = self.platens
+        return upper.position - lower.position
+
+    @property
+    def strain_rate(self) -> float:
+        """Nominal axial strain rate [1/s], compression positive."""
+        lower, upper = self.platens
+        return (lower.speed - upper.speed) / self.height
+
+
+@dataclass(frozen=True, kw_only=True)
+class Schedule:
+    """How long, and in what steps. Give `strain_end` (platen strain, compression positive) or `t_end` [s].
+
+    dt = cfl dx/c_p unless `dt` [s] is given. `rows` is about how many rows the history gets.
+    """
+
+    strain_end: float | None = None
+    t_end: float | None = None
+    cfl: float = 0.5
+    dt: float | None = None
+    rows: int = 1000
+
+    def __post_init__(self):
+        if (self.strain_end is None) == (self.t_end is None):
+            raise SceneError("schedule: give exactly one of strain_end (platen strain) and t_end (seconds)")
+        for name in ("t_end", "dt"):
+            value = getattr(self, name)
+            if value is not None and not (math.isfinite(value) and value > 0.0):
+                raise refuse(f"schedule.{name}", value, "a positive time in seconds")
+        if self.strain_end is not None and not (math.isfinite(self.strain_end) and 0.0 < abs(self.strain_end) < 0.5):
+            raise refuse("schedule.strain_end", self.strain_end, "a strain of size in (0, 0.5)")
+        if not (math.isfinite(self.cfl) and self.cfl > 0.0):
+            raise refuse("schedule.cfl", self.cfl, "positive")
+        if not (isinstance(self.rows, int) and 1 <= self.rows <= 1_000_000):
+            raise refuse("schedule.rows", self.rows, "a whole number from 1 to 1 000 000")
+
+
+@dataclass(frozen=True, kw_only=True)
+class Output:
+    """What is written. Frames come at equal strain (or time) intervals and when failed particles jump.
+
+    stress_limit: symmetric colour limit [Pa]; by default 1.5 times the tensile strength.
+    """
+
+    frames: int = 60
+    movie: bool = True
+    vtu: int = 10
+    painter: str = "raster"
+    stress_limit: float | None = None
+
+    def __post_init__(self):
+        for name in ("frames", "vtu"):
+            value = getattr(self, name)
+            if not (isinstance(value, int) and 0 <= value <= 10_000):
+                raise refuse(f"output.{name}", value, "a whole number from 0 to 10 000")
+        if self.painter not in ("raster", "ggui"):
+            raise refuse("output.painter", self.painter, "'raster' or 'ggui'")
+        if self.stress_limit is not None and not (math.isfinite(self.stress_limit) and self.stress_limit > 0.0):
+            raise refuse("output.stress_limit", self.stress_limit, "a positive stress in Pa")
+
+
+@dataclass(frozen=True, kw_only=True)
+class Scene:
+    """One numerical experiment, complete. One rock per scene; 2D is plane strain."""
+
+    title: str
+    domain: Domain
+    bodies: tuple[Body, ...]
+    rock: Rock
+    loading: Loading
+    schedule: Schedule
+    shape: Linear | Gimp | QuadraticBSpline = QuadraticBSpline()
+    transfer: PicFlip | Apic = PicFlip()
+    order: str = "musl"
+    output: Output = field(default_factory=Output)
+
+    def __post_init__(self):
+        if not self.bodies:
+            raise SceneError("scene.bodies is empty: give at least one Body")
+        if self.order not in ("musl", "usf", "usl"):
+            raise refuse("scene.order", self.order, "'musl', 'usf' or 'usl'")
+        if self.order == "usl" and isinstance(self.shape, Linear):
+            raise SceneError(
+                "scene.order = 'usl' with Linear shape functions is refused: its critical step tends to 0 when a "
+                "particle has just entered an empty cell; use 'musl' or 'usf', or another shape function"
+            )
+        self._check_bodies()
+        self._check_loading()
+        self._check_step()
+
+    def _check_bodies(self) -> None:
+        lower, upper = np.array(self.domain.lower), np.array(self.domain.upper)
+        per_axis = {body.seeding.particles_per_axis for body in self.bodies}
+        for k, body in enumerate(self.bodies):
+            low, high = body.region.bounds()
+            if len(low) != self.dim:
+                raise SceneError(f"bodies[{k}].region has {len(low)} dimensions, domain has {self.dim}")
+            slack = 1e-9 * (upper - lower)
+            if np.any(low < lower - slack) or np.any(high > upper + slack):
+                raise SceneError(
+                    f"bodies[{k}].region from {low.tolist()} to {high.tolist()} m lies outside the domain from "
+                    f"{list(self.domain.lower)} to {list(self.domain.upper)} m; enlarge the domain or move the body"
+                )
+            if body.velocity is not None and len(body.velocity) != self.dim:
+                raise refuse(f"bodies[{k}].velocity", body.velocity, f"{self.dim} components in m/s")
+            if isinstance(self.shape, Gimp) and not math.isclose(
+                self.shape.half_width, 0.5 / body.seeding.particles_per_axis
+            ):
+                raise refuse(
+                    "shape.half_width",
+                    self.shape.half_width,
+                    f"{0.5 / max(per_axis)} for this seeding",
+                    "particle domains would overlap or leave gaps",
+                )
+
+    def _check_loading(self) -> None:
+        loading, domain = self.loading, self.domain
+        if loading.body_force is not None and len(loading.body_force) != self.dim:
+            raise refuse("loading.body_force", loading.body_force, f"{self.dim} components in m/s^2")
+        for k, boundary in enumerate(loading.boundaries):
+            if boundary.axis >= self.dim:
+                raise refuse(f"boundaries[{k}].axis", boundary.axis, f"below the dimension {self.dim}")
+            cells = (boundary.position - domain.lower[boundary.axis]) / domain.dx
+            if abs(cells - round(cells)) > 1e-3:
+                raise refuse(
+                    f"boundaries[{k}].position",
+                    boundary.position,
+                    "on a plane of grid nodes",
+                    f"the nearest is {domain.lower[boundary.axis] + round(cells) * domain.dx:.9g} m",
+                )
+        if self.schedule.strain_end is not None or isinstance(loading.start, Affine):
+            if loading.platens is None:
+                raise SceneError("strain_end and the Affine start need two platens that face each other; give t_end")
+            if loading.width is None:
+                raise SceneError("loading.width is missing: platen forces need a loaded width to become stress")
+        if self.schedule.strain_end is not None and not loading.strain_rate * self.schedule.strain_end > 0.0:
+            raise refuse(
+                "schedule.strain_end",
+                self.schedule.strain_end,
+                f"of the sign of the platens' strain rate {loading.strain_rate:.6g} 1/s",
+            )
+        if isinstance(loading.start, Ramp) and loading.platens:
+            transits = loading.start.time * self.wave_speed / loading.height
+            if transits < 5.0:
+                raise refuse(
+                    "start.time",
+                    loading.start.time,
+                    f"at least {5.0 * loading.height / self.wave_speed:.4g} s, 5 wave transits",
+                )
+
+    def _check_step(self) -> None:
+        limit = (USL_CFL if self.order == "usl" else self.shape.stable_cfl) * self.domain.dx / self.wave_speed
+        transit = self.domain.dx / self.wave_speed
+        if self.dt <= limit:
+            return
+        if self.schedule.dt is not None and math.isclose(self.schedule.dt, PAPER_DT, rel_tol=0.01):
+            raise SceneError(
+                f"schedule.dt = {self.schedule.dt:g} s is refused: the paper prints this value, but it is "
+                f"{self.schedule.dt / transit:.0f} times dx/c_p = {transit:.5g} s, the time a P-wave needs for one "
+                f"cell; its digits are those of dx/c_p, so its exponent or unit is wrong; leave dt out or use at "
+                f"most {limit:.4g} s"
+            )
+        given = "schedule.dt" if self.schedule.dt is not None else "schedule.cfl"
+        raise refuse(
+            given,
+            self.schedule.dt if self.schedule.dt is not None else self.schedule.cfl,
+            f"such that dt = {self.dt:.4g} s is at most {limit:.4g} s (dx/c_p = {transit:.4g} s)",
+            f"use cfl <= {limit / transit:.2f}",
+        )
+
+    @property
+    def dim(self) -> int:
+        return self.domain.dim
+
+    @property
+    def wave_speed(self) -> float:
+        """P-wave speed with mass scaling [m/s]."""
+        return self.rock.wave_speed(self.loading.time_scale)
+
+    @property
+    def density(self) -> float:
+        """Density with mass scaling [kg/m^3]."""
+        return self.rock.density * self.loading.time_scale**2
+
+    @property
+    def dt(self) -> float:
+        return self.schedule.dt or self.schedule.cfl * self.domain.dx / self.wave_speed
+
+    @property
+    def t_end(self) -> float:
+        if self.schedule.t_end is not None:
+            return self.schedule.t_end
+        ramp = 0.5 * self.loading.start.time if isinstance(self.loading.start, Ramp) else 0.0
+        return self.schedule.strain_end / self.loading.strain_rate + ramp
+
+    @property
+    def steps(self) -> int:
+        return max(1, math.ceil(self.t_end / self.dt - 1e-9))
+
+    def particles(self) -> list[np.ndarray]:
+        """Initial particle positions of each body [m], [n, dim]; refuses empty bodies and glued slits."""
+        origin = np.array(self.domain.lower, dtype=float)
+        points = []
+        for k, body in enumerate(self.bodies):
+            for slit in slits_of(body.region):
+                check_slit(body.region, slit, body.seeding, self.shape, self.domain.dx, origin)
+            points.append(body.seeding.points(body.region, origin, self.domain.dx))
+            if len(points[-1]) == 0:
+                raise SceneError(f"bodies[{k}].region holds no particle: it is smaller than dx = {self.domain.dx} m")
+        return points
+
+    def elastic(self) -> "Scene":
+        """The same scene without failure."""
+        return replace(self, rock=replace(self.rock, criterion=Unbreakable()))

@@ -1,0 +1,237 @@
+"""What a run holds: particles, background nodes, ledger and events, allocated for one scene and no more."""
+
+import numpy as np
+import taichi as ti
+
+from rsmpm_ti.errors import SceneError
+from rsmpm_ti.shape import offsets
+from rsmpm_ti.spec import Affine, Scene
+from rsmpm_ti.tensors import PACKED_LENGTH
+from rsmpm_ti.traversal import Chunks, Stripes
+
+MARGIN = 3
+"""Cells of empty grid around the domain, so that no stencil leaves the arrays."""
+
+BLOCK = 8
+"""Cells per axis of a sparse block."""
+
+FAR = -(10**6)
+"""Wall index of an axis without a wall."""
+
+
+@ti.data_oriented
+class Grid:
+    """Geometry of the background grid: node i sits at origin + i dx [m]."""
+
+    def __init__(self, scene: Scene):
+        domain, dim = scene.domain, scene.dim
+        self.dim, self.dx, self.inv_dx = dim, domain.dx, 1.0 / domain.dx
+        cells = np.ceil((np.array(domain.upper) - np.array(domain.lower)) / domain.dx - 1e-6).astype(int)
+        self.nodes = tuple(int(c) + 2 * MARGIN + 1 for c in cells)
+        self.origin = tuple(float(a) - MARGIN * domain.dx for a in domain.lower)
+        lower, upper = [FAR] * dim, [-FAR] * dim
+        for boundary in scene.loading.boundaries:
+            row = round((boundary.position - self.origin[boundary.axis]) / domain.dx)
+            if boundary.side == "lower":
+                lower[boundary.axis] = max(lower[boundary.axis], row)
+            else:
+                upper[boundary.axis] = min(upper[boundary.axis], row)
+        self.wall_lower, self.wall_upper = tuple(lower), tuple(upper)
+
+    @ti.func
+    def local(self, x):
+        """Grid coordinates x/dx from the first node."""
+        return (x - ti.Vector(self.origin)) * self.inv_dx
+
+    @ti.func
+    def base(self, xi, shape: ti.template()):
+        """First node of the stencil; clamped, so that a lost or NaN particle never writes out of bounds."""
+        base = ti.floor(xi - shape.shift).cast(int)
+        return ti.max(0, ti.min(base, ti.Vector(self.nodes) - shape.width))
+
+    @ti.func
+    def position(self, i):
+        return ti.Vector(self.origin) + i * self.dx
+
+
+@ti.data_oriented
+class Nodes:
+    """Node fields, interleaved in memory. `sparse` places them under pointer blocks.
+
+    v holds momentum until the nodes are updated, then velocity; f holds force, then the velocity change of the step;
+    w (musl only) the momentum, then velocity, mapped back from moved particles.
+    """
+
+    def __init__(self, scene: Scene, grid: Grid, real, sparse: bool):
+        self.mass = ti.field(real)
+        self.v, self.f = ti.Vector.field(grid.dim, real), ti.Vector.field(grid.dim, real)
+        self.remap = scene.order == "musl"
+        self.w = ti.Vector.field(grid.dim, real) if self.remap else self.v
+        axes = (ti.ij, ti.ijk)[grid.dim - 2]
+        self.blocks = None
+        if sparse:
+            counts = tuple(-(-n // BLOCK) for n in grid.nodes)
+            self.blocks = ti.root.pointer(axes, counts)
+            parent = self.blocks.dense(axes, (BLOCK,) * grid.dim)
+        else:
+            parent = ti.root.dense(axes, grid.nodes)
+        parent.place(self.mass, self.v, self.f, *((self.w,) if self.remap else ()))
+
+    def forget_empty(self) -> None:
+        """Deactivate every block; the next P2G activates those that hold material."""
+        if self.blocks is not None:
+            self.blocks.deactivate_all()
+
+
+@ti.data_oriented
+class Particles:
+    """Particle fields, one array per component (SoA), in cell order. `id` is the seeding order.
+
+    Position is reference + displacement: adding 1e-9 m to 0.1 m does nothing in float32.
+    """
+
+    def __init__(self, scene: Scene, count: int, real):
+        dim, self.count = scene.dim, count
+
+        def vector(n):
+            return ti.Vector.field(n, real, count, layout=ti.Layout.SOA)
+
+        self.reference, self.u, self.v = vector(dim), vector(dim), vector(dim)
+        self.sigma = vector(PACKED_LENGTH[dim])
+        self.J, self.volume = ti.field(real, count), ti.field(real, count)  # volume: initial [m^dim]
+        self.id = ti.field(ti.i32, count)
+        self.affine, self.viscous = scene.transfer.affine, scene.rock.viscosity.acts
+        self.breaks = scene.rock.criterion.breaks
+        real_fields = [self.reference, self.u, self.v, self.sigma, self.J, self.volume]
+        whole_fields = [self.id]
+        if self.affine:
+            self.C = ti.Matrix.field(dim, dim, real, count, layout=ti.Layout.SOA)
+            real_fields.append(self.C)
+        if self.viscous:
+            self.q = ti.field(real, count)
+            real_fields.append(self.q)
+        if self.breaks:
+            self.mode = ti.field(ti.i32, count)
+            whole_fields.append(self.mode)
+        self.real_components = tuple(c for field in real_fields for c in _components(field))
+        self.whole_components = tuple(whole_fields)
+        self.key, self.order = ti.field(ti.i32, count), ti.field(ti.i32, count)
+        self.scratch = ti.field(real, count)
+
+
+def _components(field) -> tuple:
+    if isinstance(field, ti.MatrixField):
+        columns = range(field.m) if field.ndim == 2 else (None,)
+        return tuple(field.get_scalar_field(*((a,) if b is None else (a, b))) for a in range(field.n) for b in columns)
+    return (field,)
+
+
+@ti.data_oriented
+class Events:
+    """Failure events in the order in which they happen; at most one per particle."""
+
+    def __init__(self, scene: Scene, capacity: int, real):
+        self.count = ti.field(ti.i32, ())
+        capacity = capacity if scene.rock.criterion.breaks else 1
+        self.time, self.sigma_1 = ti.field(ti.f64, capacity), ti.field(real, capacity)
+        self.sigma_3, self.released = ti.field(real, capacity), ti.field(real, capacity)
+        self.x = ti.Vector.field(scene.dim, real, capacity)
+        self.mode, self.id = ti.field(ti.i32, capacity), ti.field(ti.i32, capacity)
+
+
+@ti.data_oriented
+class Ledger:
+    """Sums over steps, always float64: platen impulses [N s], their work [J], energy lost [J]."""
+
+    def __init__(self, scene: Scene, slots: int):
+        boundaries = max(1, len(scene.loading.boundaries))
+        self.impulse = ti.Vector.field(scene.dim, ti.f64, boundaries)
+        self.work = ti.field(ti.f64, boundaries)
+        self.body_work = ti.field(ti.f64, slots)
+        self.viscous, self.released = ti.field(ti.f64, slots), ti.field(ti.f64, slots)
+
+
+@ti.data_oriented
+class Report:
+    """Scalar fields that the survey sums into."""
+
+    def __init__(self, dim: int):
+        self.kinetic, self.elastic, self.speed = (ti.field(ti.f64, ()) for _ in range(3))
+        self.J_min, self.J_max = ti.field(ti.f64, ()), ti.field(ti.f64, ())
+        self.sick, self.sick_id, self.strays = (ti.field(ti.i32, ()) for _ in range(3))
+        self.momentum = tuple(ti.field(ti.f64, ()) for _ in range(dim))
+
+
+@ti.data_oriented
+class Simulation:
+    """Everything kernels need, as one object: a kernel launch then looks up one template argument, not ten."""
+
+    def __init__(self, scene: Scene, positions: list[np.ndarray], real=ti.f64, gpu: bool = False):
+        self.scene, self.real, self.dim = scene, real, scene.dim
+        self.rock, self.shape, self.transfer = scene.rock, scene.shape, scene.transfer
+        self.boundaries = scene.loading.boundaries
+        self.stencil = offsets(scene.shape, scene.dim)
+        self.size = len(self.stencil)  # nodes of a stencil
+        self.density, self.wave_speed = scene.density, scene.wave_speed
+        # mass scaling must leave the weight of a body unchanged, so its acceleration shrinks as its density grows
+        force = scene.loading.body_force or (0.0,) * scene.dim
+        self.heavy = any(component != 0.0 for component in force)
+        self.acceleration = tuple(component / scene.loading.time_scale**2 for component in force)
+        self.grid = Grid(scene)
+        count = sum(len(x) for x in positions)
+        if count >= 2**31:
+            raise SceneError(f"{count} particles are more than 2^31 - 1; use a larger dx or fewer particles per axis")
+        self.particles = Particles(scene, count, real)
+        self.traversal = Chunks(count) if gpu else Stripes(self.grid.nodes[0])
+        self.nodes = Nodes(scene, self.grid, real, use_sparse_grid(scene, count))
+        self.events, self.ledger = Events(scene, count, real), Ledger(scene, self.traversal.count)
+        self.report = Report(scene.dim)
+        self._fill(scene, positions)
+
+    def _fill(self, scene: Scene, positions: list[np.ndarray]) -> None:
+        kind = np.float64 if self.real == ti.f64 else np.float32
+        particles = self.particles
+        x = np.concatenate(positions)
+        v = np.concatenate([initial_velocity(scene, k, p) for k, p in enumerate(positions)])
+        volume = np.concatenate(
+            [
+                np.full(len(p), (scene.domain.dx / body.seeding.particles_per_axis) ** scene.dim)
+                for p, body in zip(positions, scene.bodies, strict=True)
+            ]
+        )
+        particles.reference.from_numpy(x.astype(kind))
+        particles.v.from_numpy(v.astype(kind))
+        particles.volume.from_numpy(volume.astype(kind))
+        particles.J.fill(1.0)
+        particles.id.from_numpy(np.arange(len(x), dtype=np.int32))
+
+
+def initial_velocity(scene: Scene, body_index: int, x: np.ndarray) -> np.ndarray:
+    """Velocity of a body's particles at the start [m/s], [n, dim].
+
+    Affine start: linear between the platens along the axis, and its Poisson part across it, about the centre.
+    """
+    body, loading = scene.bodies[body_index], scene.loading
+    v = np.tile(np.array(body.velocity or (0.0,) * scene.dim), (len(x), 1))
+    low, high = (np.array(b) for b in body.region.bounds())
+    centre = 0.5 * (low + high)
+    if body.spin:
+        v[:, 0] -= body.spin * (x[:, 1] - centre[1])
+        v[:, 1] += body.spin * (x[:, 0] - centre[0])
+    if isinstance(loading.start, Affine):
+        lower, upper = loading.platens
+        axis, elasticity = lower.axis, scene.rock.elasticity
+        share = (x[:, axis] - lower.position) / loading.height
+        v[:, axis] += lower.speed + (upper.speed - lower.speed) * share
+        ratio = elasticity.plane_strain_ratio if scene.dim == 2 else elasticity.nu
+        for lateral in (d for d in range(scene.dim) if d != axis):
+            v[:, lateral] += ratio * loading.strain_rate * (x[:, lateral] - centre[lateral])
+    return v
+
+
+def use_sparse_grid(scene: Scene, particle_count: int) -> bool:
+    """'auto' takes the sparse grid where less than a quarter of the nodes can hold material."""
+    if scene.domain.grid != "auto":
+        return scene.domain.grid == "sparse"
+    per_cell = min(body.seeding.particles_per_axis for body in scene.bodies) ** scene.dim
+    return particle_count / per_cell < 0.25 * np.prod(Grid(scene).nodes)

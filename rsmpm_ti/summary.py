@@ -1,0 +1,107 @@
+"""The numbers of a run that people quote: modulus, first failure, peak, initiation angles, and their trust."""
+
+import numpy as np
+
+from rsmpm_ti.cracks import half_turn_mismatch, wings
+from rsmpm_ti.observe import EventTable
+from rsmpm_ti.regions import slits_of
+from rsmpm_ti.snapshot import MODE_NAMES, TENSION
+from rsmpm_ti.spec import Scene
+
+ELASTIC_SHARE = (0.2, 0.9)
+"""Modulus and energy error are read between these shares of the time to first failure."""
+
+SYMMETRY_LENGTH = 15e-3
+"""The two wings are compared over this length [m]."""
+
+
+def summarise(scene: Scene, history: np.ndarray, events: EventTable, energy_start: float) -> dict:
+    """The physical part of summary.json. Stresses [Pa], lengths [m], angles [degrees]; None where not defined."""
+    stress = 0.5 * (history["stress_top_Pa"] + history["stress_bottom_Pa"])
+    time = history["time_s"]
+    # a row's stress is the mean since the row before, so it belongs to the middle of that interval
+    middle = time - 0.5 * np.diff(time, prepend=0.0)
+    strain = history["axial_strain"] - 0.5 * np.diff(history["axial_strain"], prepend=0.0)
+    first = float(events.time[0]) if len(events) else np.inf
+    before = time < first
+    out = {
+        "first_failure_stress_Pa": None,
+        "first_failure_strain": None,
+        "first_failure_time_s": None,
+        "first_failure_mode": None,
+        "first_failure_position_m": None,
+        "initiation_angles_deg": [],
+        "wing_reach_m": [],
+        "half_turn_mismatch_m": None,
+        "failed_tension": int(np.sum(events.mode == TENSION)),
+        "failed_shear": int(np.sum(events.mode != TENSION)),
+    }
+    if len(events):
+        out["first_failure_time_s"] = first
+        out["first_failure_mode"] = MODE_NAMES[events.mode[0]]
+        out["first_failure_position_m"] = events.x[0].tolist()
+    out |= _stress_numbers(stress, strain, middle, before, first, history)
+    out |= _energy_numbers(history, before, energy_start)
+    if scene.dim == 2:
+        out |= _crack_numbers(scene, events)
+    return out
+
+
+def _stress_numbers(stress, strain, middle, before, first, history) -> dict:
+    out = {"apparent_modulus_Pa": None, "peak_stress_Pa": None, "platen_imbalance": None, "platen_imbalance_max": None}
+    if len(stress) < 2 or not np.isfinite(stress).all():
+        return out
+    out["peak_stress_Pa"] = float(np.abs(stress).max() * np.sign(stress[np.abs(stress).argmax()]))
+    end = middle[before][-1] if before.any() else 0.0
+    elastic = before & (middle > ELASTIC_SHARE[0] * end) & (middle < ELASTIC_SHARE[1] * end)
+    if elastic.sum() >= 3:
+        out["apparent_modulus_Pa"] = float(np.polyfit(strain[elastic], stress[elastic], 1)[0])
+    if before.sum() >= 4 and np.isfinite(first):
+        # extrapolated from the last rows before the event: the row that holds it has already lost stress
+        k = np.flatnonzero(before)[-4:]
+        out["first_failure_stress_Pa"] = float(np.polyval(np.polyfit(middle[k], stress[k], 1), first))
+        out["first_failure_strain"] = float(np.polyval(np.polyfit(middle[k], strain[k], 1), first))
+    difference = np.abs(history["stress_top_Pa"] - history["stress_bottom_Pa"])
+    if before.any() and np.abs(stress[before]).mean() > 0.0:
+        out["platen_imbalance"] = float(difference[before].mean() / np.abs(stress[before]).mean())
+        loaded = before & (np.abs(stress) > 0.1 * np.abs(stress[before]).max())
+        out["platen_imbalance_max"] = float((difference[loaded] / np.abs(stress[loaded])).max())
+    return out
+
+
+def _energy_numbers(history, before, energy_start) -> dict:
+    """Residual kinetic + elastic + dissipated - work over work, in the elastic part and over the whole run."""
+    residual = (
+        history["energy_kinetic_J"] + history["energy_elastic_J"] + history["energy_dissipated_J"]
+        - history["work_J"] - energy_start
+    )  # fmt: skip
+    work = np.abs(history["work_J"])
+    out = {"energy_balance_error": None, "energy_balance_error_elastic": None}
+    if len(work) and work.max() > 0.0:
+        # a row early in the run divides a start-up residual by almost no work; it says nothing
+        counted = work > ELASTIC_SHARE[0] ** 2 * (work[before].max() if before.any() else work.max())
+        out["energy_balance_error"] = float((np.abs(residual) / work)[counted].max())
+        if (counted & before).any():
+            out["energy_balance_error_elastic"] = float((np.abs(residual) / work)[counted & before].max())
+    return out
+
+
+def _crack_numbers(scene: Scene, events: EventTable) -> dict:
+    slits = [(slit, body) for body in scene.bodies for slit in slits_of(body.region)]
+    if len(slits) != 1 or not len(events):
+        return {}
+    slit, body = slits[0]
+    spacing = scene.domain.dx / body.seeding.particles_per_axis
+    pair = wings(events.x[events.mode == TENSION], slit, spacing)
+    out = {"initiation_angles_deg": [None if w is None or np.isnan(w.angle) else w.angle for w in pair]}
+    platens = scene.loading.platens
+    if platens:
+        axis, centre = platens[0].axis, slit.centre
+        planes = [platens[int(w is not None and w.tip[axis] > centre[axis])].position for w in pair]
+        out["wing_reach_m"] = [
+            None if w is None else float(np.abs(w.points[:, axis] - plane).min())
+            for w, plane in zip(pair, planes, strict=True)
+        ]
+        mismatch = half_turn_mismatch(pair, slit, axis, SYMMETRY_LENGTH, 2.0 * scene.domain.dx)
+        out["half_turn_mismatch_m"] = None if np.isnan(mismatch) else mismatch
+    return out

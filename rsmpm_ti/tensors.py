@@ -1,0 +1,143 @@
+"""Tensor algebra inside kernels: packing, principal stresses, finite rotation. No state.
+
+A symmetric tensor is packed: in plane strain (xx, yy, zz, xy), in 3D (xx, yy, zz, xy, yz, zx); the first three are
+always the normal components. This file is the one place that knows the packing; laws are written in its words.
+"""
+
+import math
+
+import taichi as ti
+
+PACKED_LENGTH = {2: 4, 3: 6}
+"""Stored stress components by dimension."""
+
+
+@ti.func
+def unpack(s: ti.template()):
+    """Packed symmetric tensor -> 3x3."""
+    if ti.static(s.n == 4):
+        return ti.Matrix([[s[0], s[3], 0.0], [s[3], s[1], 0.0], [0.0, 0.0, s[2]]])
+    else:
+        return ti.Matrix([[s[0], s[3], s[5]], [s[3], s[1], s[4]], [s[5], s[4], s[2]]])
+
+
+@ti.func
+def pack(a, length: ti.template()):
+    """3x3 symmetric tensor -> packed, `length` 4 (plane strain) or 6 (3D)."""
+    if ti.static(length == 4):
+        return ti.Vector([a[0, 0], a[1, 1], a[2, 2], a[0, 1]])
+    else:
+        return ti.Vector([a[0, 0], a[1, 1], a[2, 2], a[0, 1], a[1, 2], a[2, 0]])
+
+
+@ti.func
+def in_plane_times(s: ti.template(), g):
+    """sigma . g for a packed stress and a gradient of the grid's dimension."""
+    if ti.static(s.n == 4):
+        return ti.Vector([s[0] * g[0] + s[3] * g[1], s[3] * g[0] + s[1] * g[1]])
+    else:
+        return ti.Vector(
+            [
+                s[0] * g[0] + s[3] * g[1] + s[5] * g[2],
+                s[3] * g[0] + s[1] * g[1] + s[4] * g[2],
+                s[5] * g[0] + s[4] * g[1] + s[2] * g[2],
+            ]
+        )
+
+
+@ti.func
+def extreme_principals(s: ti.template()):
+    """Largest and smallest of all three principal values of a packed symmetric tensor.
+
+    Plane strain: centre +- hypot form, exact for repeated roots, then compared with zz. 3D: the trigonometric
+    (Lode angle) solution of the characteristic cubic, Smith (1961), Comm. ACM 4:168, whose arccos argument is clamped.
+    """
+    if ti.static(s.n == 4):
+        centre = 0.5 * (s[0] + s[1])
+        half = 0.5 * (s[0] - s[1])
+        radius = ti.sqrt(half * half + s[3] * s[3])
+        return ti.Vector([ti.max(centre + radius, s[2]), ti.min(centre - radius, s[2])])
+    else:
+        mean = (s[0] + s[1] + s[2]) / 3.0
+        a, b, c = s[0] - mean, s[1] - mean, s[2] - mean
+        J2 = 0.5 * (a * a + b * b + c * c) + s[3] * s[3] + s[4] * s[4] + s[5] * s[5]
+        J3 = a * (b * c - s[4] * s[4]) - s[3] * (s[3] * c - s[4] * s[5]) + s[5] * (s[3] * s[4] - b * s[5])
+        radius = ti.sqrt(J2 / 3.0)
+        # J3 / (2 radius^3) is cos(3 theta); at radius 0 all roots are the mean and the angle does not matter
+        cosine = ti.max(-1.0, ti.min(1.0, J3 / ti.max(2.0 * radius * radius * radius, 1e-30)))
+        theta = ti.acos(cosine) / 3.0
+        return ti.Vector(
+            [mean + 2.0 * radius * ti.cos(theta), mean + 2.0 * radius * ti.cos(theta + 2.0 * math.pi / 3.0)]
+        )
+
+
+@ti.func
+def midpoint_gradient(G):
+    """Displacement gradient of the step, referred to the middle of the step: G (1 + G/2)^-1, G = dt grad v.
+
+    Hughes & Winget (1980), Int. J. Numer. Meth. Eng. 15:1862, eq. 19: a finite rotation becomes exactly skew.
+    """
+    return G @ (ti.Matrix.identity(float, G.n) + 0.5 * G).inverse()
+
+
+@ti.func
+def symmetric(G: ti.template()):
+    """Packed symmetric part of a dim x dim gradient; out-of-plane components are 0 in plane strain."""
+    if ti.static(G.n == 2):
+        return ti.Vector([G[0, 0], G[1, 1], 0.0, 0.5 * (G[0, 1] + G[1, 0])])
+    else:
+        return ti.Vector(
+            [
+                G[0, 0],
+                G[1, 1],
+                G[2, 2],
+                0.5 * (G[0, 1] + G[1, 0]),
+                0.5 * (G[1, 2] + G[2, 1]),
+                0.5 * (G[2, 0] + G[0, 2]),
+            ]
+        )
+
+
+@ti.func
+def rotate(s: ti.template(), G: ti.template()):
+    """R s R^T of a packed tensor, R = (1 - W/2)^-1 (1 + W/2), W the skew part of the dim x dim increment G.
+
+    Hughes & Winget (1980), eq. 25, in closed form. R is orthogonal to round-off for any W, so invariants are kept.
+    """
+    if ti.static(G.n == 2):
+        half = 0.25 * (G[1, 0] - G[0, 1])  # tan of half the angle of rotation
+        scale = 1.0 / (1.0 + half * half)
+        cos, sin = (1.0 - half * half) * scale, 2.0 * half * scale
+        centre, a, b = 0.5 * (s[0] + s[1]), 0.5 * (s[0] - s[1]), s[3]
+        cos_2, sin_2 = cos * cos - sin * sin, 2.0 * cos * sin
+        turned, shear = a * cos_2 - b * sin_2, b * cos_2 + a * sin_2
+        return ti.Vector([centre + turned, centre - turned, s[2], shear])
+    else:
+        W = 0.5 * (G - G.transpose())
+        square = W[0, 1] * W[0, 1] + W[1, 2] * W[1, 2] + W[2, 0] * W[2, 0]
+        R = ti.Matrix.identity(float, 3) + (W + 0.5 * (W @ W)) / (1.0 + 0.25 * square)
+        return pack(R @ unpack(s) @ R.transpose(), 6)
+
+
+@ti.func
+def trace(s: ti.template()):
+    """Trace of a packed tensor."""
+    return s[0] + s[1] + s[2]
+
+
+@ti.func
+def double_contraction(a: ti.template(), b: ti.template()):
+    """a : b of packed symmetric tensors."""
+    total = a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+    for k in ti.static(range(3, a.n)):
+        total += 2.0 * a[k] * b[k]
+    return total
+
+
+@ti.func
+def isotropic(value, length: ti.template()):
+    """value x identity, packed."""
+    out = ti.Vector.zero(float, length)
+    for d in ti.static(range(3)):
+        out[d] = value
+    return out

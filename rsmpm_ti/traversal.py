@@ -1,0 +1,67 @@
+"""In what order particles meet nodes, and how they may add to them: the one place where CPU and GPU differ.
+
+Particles lie in cell order. A run of particles with the same base node gathers its node sums in locals and adds them
+once. On a CPU, stripes of rows in two colours share no node, so adding needs no atomics (a locked compare-exchange
+costs more than the arithmetic). On a GPU each thread takes a few neighbouring particles and adds atomically.
+"""
+
+import taichi as ti
+
+ROWS = 4
+"""Rows of base nodes in a stripe. More than a stencil's width, so that stripes of one colour share no node even when
+particles have strayed one row since the last sort: (s + 1) ROWS + width - 1 < (s + 2) ROWS - 1."""
+
+SPREAD = 512
+"""Taichi 1.7.4 runs a CPU range-for of 512 or fewer iterations on one thread, so each stripe is given 512."""
+
+
+@ti.data_oriented
+class Stripes:
+    """CPU: stripes of ROWS rows along the first axis, even ones first, then odd ones."""
+
+    colours = 2
+
+    def __init__(self, rows: int):
+        self.count = -(-rows // ROWS)
+        self.items = (self.count // 2 + 1) * SPREAD  # loop iterations per colour
+        self.start = ti.field(ti.i32, self.count + 1)  # first particle of each stripe
+
+    @ti.func
+    def span(self, t, colour: ti.template()):
+        """Particles [start, stop) of loop iteration t, and the slot of this stripe's ledger."""
+        start, stop, stripe = 0, 0, 2 * (t // SPREAD) + colour
+        if t % SPREAD == 0 and stripe < self.count:
+            start, stop = self.start[stripe], self.start[stripe + 1]
+        return start, stop, stripe
+
+    @ti.func
+    def add(self, field: ti.template(), i, value):
+        field[i] = field[i] + value
+
+    def refresh(self, first_row) -> None:
+        """`first_row`: NumPy base row of every particle, sorted."""
+        self.start.from_numpy(first_row.searchsorted([ROWS * s for s in range(self.count + 1)]).astype("int32"))
+
+
+@ti.data_oriented
+class Chunks:
+    """GPU: every thread takes a few particles that are neighbours in cell order."""
+
+    colours = 1
+    size = 4
+
+    def __init__(self, particle_count: int):
+        self.particle_count = particle_count
+        self.items = -(-particle_count // self.size)
+        self.count = self.items
+
+    @ti.func
+    def span(self, t, colour: ti.template()):
+        return t * self.size, ti.min((t + 1) * self.size, self.particle_count), t
+
+    @ti.func
+    def add(self, field: ti.template(), i, value):
+        field[i] += value
+
+    def refresh(self, first_row) -> None:
+        pass
