@@ -4,6 +4,11 @@
 Both are loaded on first use, so `import rsmpm_ti` alone pulls in neither Taichi nor a painter.
 """
 
+import os
+
+# Taichi greets on standard output when it is imported; a command's output should hold only its own words
+os.environ.setdefault("ENABLE_TAICHI_HEADER_PRINT", "0")
+
 __version__ = "0.1.0"
 __all__ = ["__version__", "load_scene", "simulate"]
 
@@ -14,7 +19,7 @@ def __getattr__(name: str):
 
         return load_scene
     if name == "simulate":
-        from rsmpm_ti.simulate import simulate
+        from rsmpm_ti.run import simulate
 
         return simulate
     raise AttributeError(f"module 'rsmpm_ti' has no attribute {name!r}")

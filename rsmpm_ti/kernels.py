@@ -70,66 +70,77 @@ def clear_nodes(sim: ti.template()):
 
 
 @ti.func
+def coordinates(sim: ti.template(), p):
+    """Grid coordinates x/dx of a particle."""
+    return sim.grid.local(sim.particles.reference[p] + sim.particles.u[p])
+
+
+@ti.func
+def same_run(sim: ti.template(), xi, base):
+    """Whether a particle at grid coordinates xi shares the base node of the current run."""
+    return (sim.grid.base(xi, sim.shape) == base).all()
+
+
+@ti.func
 def p2g_span(sim: ti.template(), start, stop, momentum: ti.template(), force: ti.template()):
     """m_i = sum w_ip m_p, (mv)_i = sum w_ip m_p v_p, f_i = -sum V_p (sigma_p - q) grad w_ip (paper eq. 7-9).
 
     Eq. 9 of the paper says deviatoric stress; the total stress is meant.
     """
     particles, nodes, grid = sim.particles, sim.nodes, sim.grid
-    m = ti.Vector.zero(float, sim.size)
-    mv, f = ti.Matrix.zero(float, sim.size, sim.dim), ti.Matrix.zero(float, sim.size, sim.dim)
-    current = ti.Vector.zero(int, sim.dim) - 1
-    for p in range(start, stop):
-        xi = grid.local(particles.reference[p] + particles.u[p])
+    p = start
+    xi = coordinates(sim, p)
+    while p < stop:
         base = grid.base(xi, sim.shape)
-        if (base != current).any():
-            if current[0] >= 0:
+        m = ti.Vector.zero(float, sim.size)
+        mv, f = ti.Matrix.zero(float, sim.size, sim.dim), ti.Matrix.zero(float, sim.size, sim.dim)
+        running = True
+        while running:
+            w, dw = weights_at(sim, xi, base)
+            m_p = sim.density * particles.volume[p]
+            V_p = particles.volume[p] * particles.J[p]
+            sigma = particles.sigma[p]
+            if ti.static(particles.viscous):
+                sigma -= isotropic(particles.q[p], sigma.n)
+            for k, offset in ti.static(enumerate(sim.stencil)):
                 if ti.static(momentum):
-                    scatter_mass(sim, current, m)
-                    scatter(sim, nodes.v, current, mv)
+                    m_ip = tensor_weight(w, offset) * m_p
+                    v_ip = carried_velocity(sim, p, base + ti.Vector(offset) - xi)
+                    m[k] += m_ip
+                    for d in ti.static(range(sim.dim)):
+                        mv[k, d] += m_ip * v_ip[d]
                 if ti.static(force):
-                    scatter(sim, nodes.f, current, f)
-            m.fill(0.0)
-            mv.fill(0.0)
-            f.fill(0.0)
-            current = base
-        w, dw = weights_at(sim, xi, base)
-        m_p = sim.density * particles.volume[p]
-        v_p = particles.v[p]
-        V_p = particles.volume[p] * particles.J[p]
-        sigma = particles.sigma[p]
-        if ti.static(particles.viscous):
-            for d in ti.static(range(3)):
-                sigma[d] -= particles.q[p]
-        for k, offset in ti.static(enumerate(sim.stencil)):
-            if ti.static(momentum):
-                m_ip = tensor_weight(w, offset) * m_p
-                v_ip = v_p
-                if ti.static(particles.affine):
-                    v_ip += particles.C[p] @ ((base + ti.Vector(offset) - xi) * grid.dx)
-                m[k] += m_ip
-                for d in ti.static(range(sim.dim)):
-                    mv[k, d] += m_ip * v_ip[d]
-            if ti.static(force):
-                push = V_p * in_plane_times(sigma, tensor_gradient(w, dw, offset, grid.inv_dx))
-                for d in ti.static(range(sim.dim)):
-                    f[k, d] -= push[d]
-    if current[0] >= 0:
+                    push = V_p * in_plane_times(sigma, tensor_gradient(w, dw, offset, grid.inv_dx))
+                    for d in ti.static(range(sim.dim)):
+                        f[k, d] -= push[d]
+            p += 1
+            running = False
+            if p < stop:
+                xi = coordinates(sim, p)
+                running = same_run(sim, xi, base)
         if ti.static(momentum):
-            scatter_mass(sim, current, m)
-            scatter(sim, nodes.v, current, mv)
+            scatter_mass(sim, base, m)
+            scatter(sim, nodes.v, base, mv)
         if ti.static(force):
-            scatter(sim, nodes.f, current, f)
+            scatter(sim, nodes.f, base, f)
+
+
+@ti.func
+def carried_velocity(sim: ti.template(), p, to_node):
+    """Velocity that a particle carries to a node `to_node` cells away: with an affine matrix, v_p + C (x_i - x_p)."""
+    v = sim.particles.v[p]
+    if ti.static(sim.particles.affine):
+        v += sim.particles.C[p] @ (to_node * sim.grid.dx)
+    return v
 
 
 @ti.kernel
-def p2g(sim: ti.template(), momentum: ti.template(), force: ti.template()):
-    """Particles to nodes: mass and momentum, force, or both in one pass."""
-    for colour in ti.static(range(sim.traversal.colours)):
-        for t in range(sim.traversal.items):
-            start, stop, slot = sim.traversal.span(t, colour)
-            if stop > start:
-                p2g_span(sim, start, stop, momentum, force)
+def p2g(sim: ti.template(), momentum: ti.template(), force: ti.template(), colour: int):
+    """Particles of one colour to nodes: mass and momentum, force, or both in one pass."""
+    for t in range(sim.traversal.items):
+        start, stop = sim.traversal.span_of_colour(t, colour)
+        if stop > start:
+            p2g_span(sim, start, stop, momentum, force)
 
 
 @ti.func
@@ -186,7 +197,7 @@ def update_nodes(sim: ti.template(), divide: ti.template(), dt: float, factor: f
 
 @ti.func
 def velocity_to_particle(sim: ti.template(), p, w, xi, base, v_i: ti.template(), dv_i: ti.template()):
-    """New particle velocity (and affine matrix) from node velocities [stencil, dim]; returns it and v_pic."""
+    """New particle velocity, and affine matrix if carried, from node velocities [stencil, dim]."""
     particles = sim.particles
     v_pic, dv = ti.Vector.zero(float, sim.dim), ti.Vector.zero(float, sim.dim)
     B = ti.Matrix.zero(float, sim.dim, sim.dim)
@@ -198,14 +209,12 @@ def velocity_to_particle(sim: ti.template(), p, w, xi, base, v_i: ti.template(),
             if ti.static(particles.affine):
                 for e in ti.static(range(sim.dim)):
                     B[d, e] += w_ip * v_i[k, d] * (offset[e] - (xi[e] - base[e]))
-    v_p = sim.transfer.to_particle(particles.v[p], v_pic, dv)
-    particles.v[p] = v_p
+    particles.v[p] = sim.transfer.to_particle(particles.v[p], v_pic, dv)
     if ti.static(particles.affine):
         D = spread(sim, w, xi - base)
         for d, e in ti.static(ti.ndrange(sim.dim, sim.dim)):
             B[d, e] *= sim.grid.inv_dx / D[e]
         particles.C[p] = B
-    return v_p, v_pic
 
 
 @ti.func
@@ -214,7 +223,9 @@ def move(sim: ti.template(), p, v_pic, dt, slot):
     particles, ledger = sim.particles, sim.ledger
     particles.u[p] += dt * v_pic
     if ti.static(sim.heavy):
-        power = v_pic.dot(ti.Vector(sim.acceleration)) * sim.density * particles.volume[p]
+        # the velocity at the middle of the step: then a free fall's work is its kinetic energy to round-off
+        b = ti.Vector(sim.acceleration)
+        power = (v_pic - 0.5 * dt * b).dot(b) * sim.density * particles.volume[p]
         ledger.body_work[slot] += ti.cast(dt * power, ti.f64)
 
 
@@ -275,91 +286,102 @@ def update_stress(sim: ti.template(), p, L, dt, time, slot):
 def remap_span(sim: ti.template(), start, stop):
     """musl: move velocity to particles and map their new momentum back with the same weights, in one pass."""
     particles, nodes, grid = sim.particles, sim.nodes, sim.grid
-    v_i, dv_i = ti.Matrix.zero(float, sim.size, sim.dim), ti.Matrix.zero(float, sim.size, sim.dim)
-    mv = ti.Matrix.zero(float, sim.size, sim.dim)
-    current = ti.Vector.zero(int, sim.dim) - 1
-    for p in range(start, stop):
-        xi = grid.local(particles.reference[p] + particles.u[p])
+    p = start
+    xi = coordinates(sim, p)
+    while p < stop:
         base = grid.base(xi, sim.shape)
-        if (base != current).any():
-            if current[0] >= 0:
-                scatter(sim, nodes.w, current, mv)
-            mv.fill(0.0)
-            v_i, dv_i = gather(sim, nodes.v, base), gather(sim, nodes.f, base)
-            current = base
-        w = fold_at_walls(sim.shape.weights(xi - base), base, grid.wall_lower, grid.wall_upper)
-        v_p, v_pic = velocity_to_particle(sim, p, w, xi, base, v_i, dv_i)
-        m_p = sim.density * particles.volume[p]
-        for k, offset in ti.static(enumerate(sim.stencil)):
-            v_ip = v_p
-            if ti.static(particles.affine):
-                v_ip += particles.C[p] @ ((base + ti.Vector(offset) - xi) * grid.dx)
-            for d in ti.static(range(sim.dim)):
-                mv[k, d] += tensor_weight(w, offset) * m_p * v_ip[d]
-    if current[0] >= 0:
-        scatter(sim, nodes.w, current, mv)
+        v_i, dv_i = gather(sim, nodes.v, base), gather(sim, nodes.f, base)
+        mv = ti.Matrix.zero(float, sim.size, sim.dim)
+        running = True
+        while running:
+            w = fold_at_walls(sim.shape.weights(xi - base), base, grid.wall_lower, grid.wall_upper)
+            velocity_to_particle(sim, p, w, xi, base, v_i, dv_i)
+            m_p = sim.density * particles.volume[p]
+            for k, offset in ti.static(enumerate(sim.stencil)):
+                v_ip = carried_velocity(sim, p, base + ti.Vector(offset) - xi)
+                m_ip = tensor_weight(w, offset) * m_p
+                for d in ti.static(range(sim.dim)):
+                    mv[k, d] += m_ip * v_ip[d]
+            p += 1
+            running = False
+            if p < stop:
+                xi = coordinates(sim, p)
+                running = same_run(sim, xi, base)
+        scatter(sim, nodes.w, base, mv)
 
 
 @ti.kernel
-def g2p_remap(sim: ti.template()):
-    for colour in ti.static(range(sim.traversal.colours)):
-        for t in range(sim.traversal.items):
-            start, stop, slot = sim.traversal.span(t, colour)
-            if stop > start:
-                remap_span(sim, start, stop)
+def g2p_remap(sim: ti.template(), colour: int):
+    for t in range(sim.traversal.items):
+        start, stop = sim.traversal.span_of_colour(t, colour)
+        if stop > start:
+            remap_span(sim, start, stop)
 
 
 @ti.func
-def g2p_span(
-    sim: ti.template(), start, stop, slot, velocity: ti.template(), position: ti.template(), stress: ti.template(),
-    dt, time,
-):  # fmt: skip
-    """Nodes to particles: velocity, position and stress, each if asked. Gradients come from nodes.w (nodes.v unless
-    musl), positions from nodes.v, all at the weights of the step's start."""
-    particles, nodes, grid = sim.particles, sim.nodes, sim.grid
-    v_i, dv_i = ti.Matrix.zero(float, sim.size, sim.dim), ti.Matrix.zero(float, sim.size, sim.dim)
-    w_i = ti.Matrix.zero(float, sim.size, sim.dim)
+def interpolate(sim: ti.template(), w, v_i: ti.template()):
+    """sum w_ip v_i."""
+    v = ti.Vector.zero(float, sim.dim)
+    for k, offset in ti.static(enumerate(sim.stencil)):
+        w_ip = tensor_weight(w, offset)
+        for d in ti.static(range(sim.dim)):
+            v[d] += w_ip * v_i[k, d]
+    return v
+
+
+@ti.func
+def velocity_gradient(sim: ti.template(), w, dw, v_i: ti.template()):
+    """L = sum v_i (x) grad w_ip."""
+    L = ti.Matrix.zero(float, sim.dim, sim.dim)
+    for k, offset in ti.static(enumerate(sim.stencil)):
+        dw_ip = tensor_gradient(w, dw, offset, sim.grid.inv_dx)
+        for d, e in ti.static(ti.ndrange(sim.dim, sim.dim)):
+            L[d, e] += v_i[k, d] * dw_ip[e]
+    return L
+
+
+@ti.func
+def g2p_span(sim: ti.template(), start, stop, slot, what: ti.template(), dt, time):
+    """Nodes to particles: what = (velocity, position, stress), each if asked, at the weights of the step's start.
+
+    Gradients come from nodes.w (nodes.v unless musl), positions from nodes.v.
+    """
+    nodes, grid = sim.nodes, sim.grid
     viscous = ti.cast(0.0, ti.f64)
-    current = ti.Vector.zero(int, sim.dim) - 1
-    for p in range(start, stop):
-        xi = grid.local(particles.reference[p] + particles.u[p])
+    p = start
+    xi = coordinates(sim, p)
+    while p < stop:
         base = grid.base(xi, sim.shape)
-        if (base != current).any():
-            if ti.static(position):
-                v_i = gather(sim, nodes.v, base)
-            if ti.static(velocity):
-                dv_i = gather(sim, nodes.f, base)
-            if ti.static(stress):
-                w_i = gather(sim, nodes.w, base)
-            current = base
-        w, dw = weights_at(sim, xi, base)
-        if ti.static(velocity):
-            v_p, v_pic = velocity_to_particle(sim, p, w, xi, base, v_i, dv_i)
-            move(sim, p, v_pic, dt, slot)
-        elif ti.static(position):
-            v_pic = ti.Vector.zero(float, sim.dim)
-            for k, offset in ti.static(enumerate(sim.stencil)):
-                for d in ti.static(range(sim.dim)):
-                    v_pic[d] += tensor_weight(w, offset) * v_i[k, d]
-            move(sim, p, v_pic, dt, slot)
-        if ti.static(stress):
-            L = ti.Matrix.zero(float, sim.dim, sim.dim)
-            for k, offset in ti.static(enumerate(sim.stencil)):
-                dw_ip = tensor_gradient(w, dw, offset, grid.inv_dx)
-                for d, e in ti.static(ti.ndrange(sim.dim, sim.dim)):
-                    L[d, e] += w_i[k, d] * dw_ip[e]
-            viscous += ti.cast(update_stress(sim, p, L, dt, time, slot), ti.f64)
-    if ti.static(stress and particles.viscous):
+        v_i, dv_i = ti.Matrix.zero(float, sim.size, sim.dim), ti.Matrix.zero(float, sim.size, sim.dim)
+        w_i = ti.Matrix.zero(float, sim.size, sim.dim)
+        if ti.static(what[1]):
+            v_i = gather(sim, nodes.v, base)
+        if ti.static(what[0]):
+            dv_i = gather(sim, nodes.f, base)
+        if ti.static(what[2]):
+            w_i = gather(sim, nodes.w, base)
+        running = True
+        while running:
+            w, dw = weights_at(sim, xi, base)
+            if ti.static(what[0]):
+                velocity_to_particle(sim, p, w, xi, base, v_i, dv_i)
+            if ti.static(what[1]):
+                move(sim, p, interpolate(sim, w, v_i), dt, slot)
+            if ti.static(what[2]):
+                L = velocity_gradient(sim, w, dw, w_i)
+                viscous += ti.cast(update_stress(sim, p, L, dt, time, slot), ti.f64)
+            p += 1
+            running = False
+            if p < stop:
+                xi = coordinates(sim, p)
+                running = same_run(sim, xi, base)
+    if ti.static(what[2] and sim.particles.viscous):
         sim.ledger.viscous[slot] += viscous
 
 
 @ti.kernel
-def g2p(
-    sim: ti.template(), velocity: ti.template(), position: ti.template(), stress: ti.template(),
-    dt: float, time: ti.f64,
-):  # fmt: skip
-    for colour in ti.static(range(sim.traversal.colours)):
-        for t in range(sim.traversal.items):
-            start, stop, slot = sim.traversal.span(t, colour)
-            if stop > start:
-                g2p_span(sim, start, stop, slot, velocity, position, stress, dt, time)
+def g2p(sim: ti.template(), what: ti.template(), dt: float, time: ti.f64):
+    for t in range(sim.traversal.all_items):
+        start, stop, slot = sim.traversal.span(t)
+        if stop > start:
+            g2p_span(sim, start, stop, slot, what, dt, time)

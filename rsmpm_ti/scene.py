@@ -9,6 +9,9 @@ from rsmpm_ti.errors import SceneError, UnstableRun
 from rsmpm_ti.library import available, find, keywords_of, load_scene, scene_name
 from rsmpm_ti.spec import Scene
 
+QUICK_FRAMES = 15
+"""Frames at equal strain of a --quick run: painting would otherwise take longer than solving."""
+
 PARTICLE_STEPS_PER_S = 8e6
 """What `--check` assumes for its estimate: measured for quadratic B-splines on two cores; see README."""
 
@@ -48,8 +51,8 @@ def build(options: argparse.Namespace) -> Scene:
         settings[name.strip()] = value.strip()
     scene = load_scene(options.scene, quick=options.quick, settings=settings)
     output = scene.output
-    if options.frames is not None:
-        output = replace(output, frames=options.frames)
+    if options.frames is not None or options.quick:
+        output = replace(output, frames=QUICK_FRAMES if options.frames is None else options.frames)
     if options.no_movie:
         output = replace(output, movie=False)
     if options.painter:
@@ -114,7 +117,7 @@ def run(scene: Scene, options: argparse.Namespace) -> int:
     from rich.console import Console
     from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn, TimeRemainingColumn
 
-    from rsmpm_ti.simulate import simulate
+    from rsmpm_ti.run import simulate
 
     name = scene_name(options.scene)
     out = Path(options.out) if options.out else Path("renders") / name
@@ -142,21 +145,26 @@ def run(scene: Scene, options: argparse.Namespace) -> int:
 def report(result) -> str:
     """A run in a few lines."""
     s = result.summary
+    speed = s["particle_steps_per_s"] / 1e6
     lines = [
-        f"{s['particles']} particles, {s['steps']} steps in {s['wall_s']:.1f} s after {s['compile_s']:.1f} s of start-up "
-        f"({s['particle_steps_per_s'] / 1e6:.1f} M particle-steps/s)"
+        f"{s['particles']} particles, {s['steps']} steps: {s['compile_s']:.1f} s of start-up, {s['wall_s']:.1f} s "
+        f"of run, {s['painting_s']:.1f} s of it painting; {speed:.1f} M particle-steps/s"
     ]
     if s["first_failure_stress_Pa"] is not None:
         place = ", ".join(f"{1e3 * c:.2f}" for c in s["first_failure_position_m"])
-        lines.append(
-            f"first failure: {s['first_failure_mode']} at {s['first_failure_stress_Pa'] / 1e6:.3f} MPa, ({place}) mm"
-        )
+        stress = s["first_failure_stress_Pa"] / 1e6
+        lines.append(f"first failure: {s['first_failure_mode']} at {stress:.3f} MPa, ({place}) mm")
     if s["peak_stress_Pa"] is not None:
-        lines.append(
-            f"peak stress: {s['peak_stress_Pa'] / 1e6:.3f} MPa; failed {s['failed_tension']} in tension, {s['failed_shear']} in shear"
-        )
+        counts = f"failed {s['failed_tension']} in tension, {s['failed_shear']} in shear"
+        lines.append(f"peak stress: {s['peak_stress_Pa'] / 1e6:.3f} MPa; {counts}")
+    angles = [f"{a:.0f}" for a in s["initiation_angles_deg"] if a is not None]
+    if angles:
+        lines.append(f"cracks leave the flaw at {' and '.join(angles)} degrees from its plane")
     if s["platen_imbalance"] is not None:
-        lines.append(f"platen imbalance up to first failure: {100 * s['platen_imbalance']:.2f} %")
+        lines.append(
+            f"up to first failure: platen imbalance {100 * s['platen_imbalance']:.2g} %, "
+            f"kinetic over elastic energy {100 * s['kinetic_share']:.2g} %"
+        )
         if s["platen_imbalance"] > 0.01:
             lines.append("warning: above 1 % the loading is not quasi-static; lower loading.time_scale or the speed")
     if result.stopped:

@@ -57,7 +57,7 @@ class Jittered:
     """
 
     particles_per_axis: int = 2
-    amount: float = 0.35
+    amount: float = 0.1
     seed: int = 1
 
     def __post_init__(self):
@@ -108,14 +108,12 @@ def check_slit(region, slit: Slit, seeding, shape, dx: float, origin: np.ndarray
     if bridge <= BRIDGE_LIMIT:
         return
     for cells in np.arange(1.0, 6.01, 0.25):
-        if (
-            cells * dx > slit.width
-            and _bridge_of_width(region, slit, cells * dx, seeding, shape, dx, origin) <= BRIDGE_LIMIT
-        ):
+        width = cells * dx
+        if width > slit.width and _bridge_of_width(region, slit, width, seeding, shape, dx, origin) <= BRIDGE_LIMIT:
             raise SceneError(
                 f"slit.width = {slit.width:.6g} m is refused: at {slit.angle:g} degrees its faces share grid nodes "
                 f"({100 * bridge:.1f} % of a node's mass, at most {100 * BRIDGE_LIMIT:g} % allowed), so it would be a "
-                f"weak inclusion and no flaw; use a width of at least {cells * dx:.6g} m ({cells:g} cells) or a finer dx"
+                f"weak inclusion and no flaw; use a width of at least {width:.6g} m ({cells:g} cells) or a finer dx"
             )
     raise SceneError(f"slit.width = {slit.width:.6g} m is refused: no width up to 6 cells separates its faces")
 

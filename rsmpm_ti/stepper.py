@@ -6,34 +6,45 @@ from rsmpm_ti.kernels import clear_nodes, g2p, g2p_remap, momentum_to_velocity, 
 from rsmpm_ti.spec import Ramp
 from rsmpm_ti.state import Simulation
 
+VELOCITY_POSITION = (True, True, False)
+POSITION_STRESS = (False, True, True)
+STRESS = (False, False, True)
+EVERYTHING = (True, True, True)
+
+
+def scatter_all(sim: Simulation, momentum: bool, force: bool) -> None:
+    for colour in range(sim.traversal.colours):
+        p2g(sim, momentum, force, colour)
+
 
 def musl(sim: Simulation, dt: float, time: float, factor: float) -> None:
     """Stress last, from velocities mapped back from moved particles.  Sulsky, Zhou & Schreyer (1995)."""
     clear_nodes(sim)
-    p2g(sim, True, True)
+    scatter_all(sim, momentum=True, force=True)
     update_nodes(sim, True, dt, factor)
-    g2p_remap(sim)
+    for colour in range(sim.traversal.colours):
+        g2p_remap(sim, colour)
     momentum_to_velocity(sim, sim.nodes.w, factor)
-    g2p(sim, False, True, True, dt, time)
+    g2p(sim, POSITION_STRESS, dt, time)
 
 
 def usf(sim: Simulation, dt: float, time: float, factor: float) -> None:
     """Stress first.  Bardenhagen (2002), J. Comput. Phys. 180:383."""
     clear_nodes(sim)
-    p2g(sim, True, False)
+    scatter_all(sim, momentum=True, force=False)
     momentum_to_velocity(sim, sim.nodes.v, factor)
-    g2p(sim, False, False, True, dt, time)
-    p2g(sim, False, True)
+    g2p(sim, STRESS, dt, time)
+    scatter_all(sim, momentum=False, force=True)
     update_nodes(sim, False, dt, factor)
-    g2p(sim, True, True, False, dt, time)
+    g2p(sim, VELOCITY_POSITION, dt, time)
 
 
 def usl(sim: Simulation, dt: float, time: float, factor: float) -> None:
     """Stress last, from the updated node velocities; dissipates.  Sulsky, Chen & Schreyer (1994)."""
     clear_nodes(sim)
-    p2g(sim, True, True)
+    scatter_all(sim, momentum=True, force=True)
     update_nodes(sim, True, dt, factor)
-    g2p(sim, True, True, True, dt, time)
+    g2p(sim, EVERYTHING, dt, time)
 
 
 ORDERS = {"musl": musl, "usf": usf, "usl": usl}

@@ -48,7 +48,8 @@ def summarise(scene: Scene, history: np.ndarray, events: EventTable, energy_star
 
 
 def _stress_numbers(stress, strain, middle, before, first, history) -> dict:
-    out = {"apparent_modulus_Pa": None, "peak_stress_Pa": None, "platen_imbalance": None, "platen_imbalance_max": None}
+    names = ("apparent_modulus_Pa", "peak_stress_Pa", "platen_imbalance", "platen_imbalance_max", "kinetic_share")
+    out = dict.fromkeys(names)
     if len(stress) < 2 or not np.isfinite(stress).all():
         return out
     out["peak_stress_Pa"] = float(np.abs(stress).max() * np.sign(stress[np.abs(stress).argmax()]))
@@ -64,6 +65,9 @@ def _stress_numbers(stress, strain, middle, before, first, history) -> dict:
     difference = np.abs(history["stress_top_Pa"] - history["stress_bottom_Pa"])
     if before.any() and np.abs(stress[before]).mean() > 0.0:
         out["platen_imbalance"] = float(difference[before].mean() / np.abs(stress[before]).mean())
+        # with the Affine start both platens feel the same by symmetry, so the imbalance alone proves little: this
+        # second measure sees motion inside the specimen too
+        out["kinetic_share"] = float(history["energy_kinetic_J"][before][-1] / history["energy_elastic_J"][before][-1])
         loaded = before & (np.abs(stress) > 0.1 * np.abs(stress[before]).max())
         out["platen_imbalance_max"] = float((difference[loaded] / np.abs(stress[loaded])).max())
     return out

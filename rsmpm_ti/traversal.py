@@ -23,16 +23,25 @@ class Stripes:
 
     def __init__(self, rows: int):
         self.count = -(-rows // ROWS)
-        self.items = (self.count // 2 + 1) * SPREAD  # loop iterations per colour
+        self.all_items = self.count * SPREAD  # loop iterations over all stripes
+        self.items = (self.count // 2 + 1) * SPREAD  # and over those of one colour
         self.start = ti.field(ti.i32, self.count + 1)  # first particle of each stripe
 
     @ti.func
-    def span(self, t, colour: ti.template()):
-        """Particles [start, stop) of loop iteration t, and the slot of this stripe's ledger."""
+    def span(self, t):
+        """Particles [start, stop) of loop iteration t over all stripes, and the stripe as slot in ledgers."""
+        start, stop, stripe = 0, 0, t // SPREAD
+        if t % SPREAD == 0:
+            start, stop = self.start[stripe], self.start[stripe + 1]
+        return start, stop, stripe
+
+    @ti.func
+    def span_of_colour(self, t, colour):
+        """Particles [start, stop) of loop iteration t over the stripes of one colour."""
         start, stop, stripe = 0, 0, 2 * (t // SPREAD) + colour
         if t % SPREAD == 0 and stripe < self.count:
             start, stop = self.start[stripe], self.start[stripe + 1]
-        return start, stop, stripe
+        return start, stop
 
     @ti.func
     def add(self, field: ti.template(), i, value):
@@ -52,12 +61,15 @@ class Chunks:
 
     def __init__(self, particle_count: int):
         self.particle_count = particle_count
-        self.items = -(-particle_count // self.size)
-        self.count = self.items
+        self.items = self.all_items = self.count = -(-particle_count // self.size)
 
     @ti.func
-    def span(self, t, colour: ti.template()):
+    def span(self, t):
         return t * self.size, ti.min((t + 1) * self.size, self.particle_count), t
+
+    @ti.func
+    def span_of_colour(self, t, colour):
+        return t * self.size, ti.min((t + 1) * self.size, self.particle_count)
 
     @ti.func
     def add(self, field: ti.template(), i, value):

@@ -7,7 +7,7 @@ from rsmpm_ti.seeding import Jittered
 from rsmpm_ti.spec import Affine, Body, Domain, Loading, Scene, Schedule
 from rsmpm_ti.units import GPa, MPa, mm
 
-QUICK = {"dx": 1.0 * mm, "flaw_width": 3.0 * mm, "strain_end": 2.0e-4}
+QUICK = {"dx": 1.0 * mm, "flaw_width": 3.0 * mm, "strain_end": 2.5e-4}
 
 
 def scene(
@@ -16,8 +16,8 @@ def scene(
     flaw_length: float = 15.0 * mm,
     flaw_width: float = 1.5 * mm,
     dx: float = 0.5 * mm,
-    strain_end: float = 3.5e-4,
-    time_scale: float = 4.0,
+    strain_end: float = 2.5e-4,
+    time_scale: float = 8.0,
 ) -> Scene:
     rock = Rock(
         density=2600.0,
@@ -33,7 +33,7 @@ def scene(
     return Scene(
         title="Uniaxial compression of a specimen with an inclined flaw",
         domain=Domain(lower=(-5.0 * mm, 0.0), upper=(55.0 * mm, 100.0 * mm), dx=dx),
-        bodies=(Body(region=Difference(whole=block, removed=(flaw,)), seeding=Jittered()),),
+        bodies=(Body(region=Difference(whole=block, removed=(flaw,)), seeding=Jittered(amount=0.1)),),
         rock=rock,
         loading=Loading(boundaries=platens, start=Affine(), time_scale=time_scale, width=50.0 * mm),
         schedule=Schedule(strain_end=strain_end),

@@ -17,10 +17,10 @@ def scene(
     flaw_angle: float = 90.0,
     flaw_length: float = 30.0 * mm,
     flaw_width: float = 1.5 * mm,
-    arc: float = 5.0,
+    arc: float = 90.0,  # half-angle of the loaded arc [degrees]; 90: every node in touch with the platen row
     dx: float = 0.5 * mm,
-    strain_end: float = 2.0e-4,
-    time_scale: float = 4.0,
+    strain_end: float = 1.5e-4,
+    time_scale: float = 8.0,
 ) -> Scene:
     radius, centre = 50.0 * mm, (50.0 * mm, 50.0 * mm)
     rock = Rock(
@@ -41,7 +41,7 @@ def scene(
     return Scene(
         title="Brazilian disc with a central flaw",
         domain=Domain(lower=(-5.0 * mm, 0.0), upper=(105.0 * mm, 2.0 * radius), dx=dx),
-        bodies=(Body(region=region, seeding=Jittered()),),
+        bodies=(Body(region=region, seeding=Jittered(amount=0.1)),),
         rock=rock,
         loading=Loading(
             boundaries=platens, start=Ramp(time=0.3 * ms * time_scale), time_scale=time_scale, width=math.pi * radius

@@ -4,7 +4,26 @@ import pytest
 import taichi as ti
 
 
+def start(real, threads: int = 2) -> None:
+    ti.init(arch=ti.cpu, default_fp=real, cpu_max_num_threads=threads, offline_cache=True, log_level=ti.ERROR)
+
+
 @pytest.fixture(scope="module")
 def taichi_f64():
     """Taichi on the CPU in double precision; fields of earlier modules are gone afterwards."""
-    ti.init(arch=ti.cpu, default_fp=ti.f64, cpu_max_num_threads=2, offline_cache=True)
+    start(ti.f64)
+
+
+@pytest.fixture(scope="module", params=["f64", "f32"])
+def taichi_real(request):
+    """The same in both precisions, the module's tests first in one, then in the other; gives ti.f64 or ti.f32."""
+    real = getattr(ti, request.param)
+    start(real)
+    return real
+
+
+@pytest.fixture
+def restart_taichi():
+    """start(real, threads): Taichi again, inside a test; fields are gone at every call. Ends with two threads, f64."""
+    yield start
+    start(ti.f64)

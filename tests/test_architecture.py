@@ -22,7 +22,7 @@ PAINT_LAYERS = "view layout chrome raster ggui figure summary movie".split()
 PAINT_SEES = {"errors", "units", "snapshot"}
 WITHOUT_TAICHI = ["errors", "units", "snapshot", "regions", "seeding", "output"]
 STRATEGY_FILES = ["shape", "transfer", "laws", "boundaries"]
-MAY_INIT = {"rsmpm_ti/simulate.py", "tests/conftest.py"}
+MAY_INIT = {"rsmpm_ti/run.py", "tests/conftest.py"}
 VAGUE = {"util", "utils", "helper", "helpers", "manager", "managers", "engine", "engines"}
 MOST_LINES = 350
 

@@ -1,5 +1,7 @@
 """Run a scene from Python: start Taichi, step, observe, write. The only module that starts Taichi."""
 
+import contextlib
+import io
 import math
 import os
 import signal
@@ -102,13 +104,13 @@ def _prepare(scene: Scene, out) -> Path | None:
 
 
 def _start_taichi(precision: str, arch: str, threads: int | None):
-    os.environ.setdefault("ENABLE_TAICHI_HEADER_PRINT", "0")
     import taichi as ti
 
     real = ti.f64 if precision == "f64" else ti.f32
     # never ti.gpu: it crashes without Vulkan, or runs silently on a software Vulkan with wrong numbers
     wanted = [ti.cuda, ti.cpu] if arch == "cuda" else ti.cpu
-    ti.init(arch=wanted, default_fp=real, cpu_max_num_threads=threads or os.cpu_count() or 1, log_level=ti.ERROR)
+    with contextlib.redirect_stdout(io.StringIO()):  # it announces its backend there
+        ti.init(arch=wanted, default_fp=real, cpu_max_num_threads=threads or os.cpu_count() or 1, log_level=ti.ERROR)
     if arch == "cuda" and ti.lang.impl.current_cfg().arch != ti.cuda:
         raise SceneError("arch = 'cuda' is refused: no usable CUDA device was found; use --arch cpu")
     return real, arch == "cuda"

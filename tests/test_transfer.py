@@ -1,0 +1,343 @@
+"""Whole time steps against a plain NumPy loop over particles and nodes, and what transfers must keep exactly."""
+
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+import taichi as ti
+from exact import lame, shape_function
+from harness import epsilon, name_of, variants
+
+from rsmpm_ti import shape as shapes
+from rsmpm_ti import transfer as transfers
+from rsmpm_ti.boundaries import Wall
+from rsmpm_ti.kernels import clear_nodes
+from rsmpm_ti.laws import BulkViscosity, Hooke, NoViscosity, Rock, Unbreakable
+from rsmpm_ti.regions import Box
+from rsmpm_ti.shape import Gimp, Linear, QuadraticBSpline
+from rsmpm_ti.sorting import sort_particles
+from rsmpm_ti.spec import Body, Domain, Loading, Scene, Schedule
+from rsmpm_ti.state import MARGIN, Simulation
+from rsmpm_ti.stepper import ORDERS, scatter_all
+from rsmpm_ti.tensors import PACKED_LENGTH
+from rsmpm_ti.transfer import Apic, PicFlip
+
+DX = 0.5e-3
+CELLS = (24, 6)
+COUNT = 150
+PLACES = ((0, 0), (1, 1), (2, 2), (0, 1), (1, 2), (2, 0))
+LOWER = Wall(axis=1, side="lower", position=0.0)
+UPPER = Wall(axis=1, side="upper", position=CELLS[1] * DX)
+every_shape = pytest.mark.parametrize("shape", variants(shapes, "weights"), ids=name_of)
+every_transfer = pytest.mark.parametrize("transfer", variants(transfers, "to_particle"), ids=name_of)
+
+
+def make_scene(shape, transfer, *, order="musl", cells=CELLS, boundaries=(), viscosity=None) -> Scene:
+    dim = len(cells)
+    upper = tuple(c * DX for c in cells)
+    return Scene(
+        title="cloud",
+        domain=Domain(lower=(0.0,) * dim, upper=upper, dx=DX),
+        bodies=(Body(region=Box(lower=(0.0,) * dim, upper=upper)),),
+        rock=Rock(
+            density=2600.0,
+            elasticity=Hooke(E=17e9, nu=0.14),
+            criterion=Unbreakable(),
+            viscosity=viscosity or NoViscosity(),
+        ),
+        loading=Loading(boundaries=boundaries),
+        schedule=Schedule(t_end=1e-6, cfl=0.3),
+        shape=shape,
+        transfer=transfer,
+        order=order,
+    )
+
+
+@pytest.fixture(scope="module")
+def simulations(taichi_f64):
+    """Scene -> Simulation: kernels compile once for each, so tests share them."""
+    return {}
+
+
+def cloud(scene: Scene, sim: Simulation) -> SimpleNamespace:
+    """Put particles anywhere in the domain in any state; the same state in NumPy, by particle id."""
+    random, dim = np.random.default_rng(17), scene.dim
+    upper = np.array(scene.domain.upper)
+    state = SimpleNamespace(
+        reference=random.uniform(1e-4 * DX, upper - 1e-4 * DX, size=(COUNT, dim)),
+        u=np.zeros((COUNT, dim)),
+        v=random.normal(size=(COUNT, dim)),
+        sigma=random.normal(size=(COUNT, PACKED_LENGTH[dim])) * 1e6,
+        J=random.uniform(0.9, 1.1, size=COUNT),
+        volume=np.full(COUNT, (0.5 * DX) ** dim),
+        C=random.normal(size=(COUNT, dim, dim)) * 1e3 * scene.transfer.affine,
+        q=random.uniform(0.0, 1e6, size=COUNT) * scene.rock.viscosity.acts,
+    )
+    put(sim, state)
+    return state
+
+
+def put(sim: Simulation, state: SimpleNamespace) -> None:
+    kind = np.float64 if sim.real == ti.f64 else np.float32
+    for name, values in vars(state).items():
+        if hasattr(sim.particles, name):
+            getattr(sim.particles, name).from_numpy(values.astype(kind))
+    sim.particles.id.from_numpy(np.arange(COUNT, dtype=np.int32))
+    sort_particles(sim)
+
+
+def simulation(scene: Scene, real=ti.f64) -> Simulation:
+    return Simulation(scene, [np.zeros((COUNT, scene.dim))], real)
+
+
+def shared(simulations: dict, scene: Scene) -> Simulation:
+    if scene not in simulations:
+        simulations[scene] = simulation(scene)
+    return simulations[scene]
+
+
+def by_id(sim: Simulation, name: str) -> np.ndarray:
+    field = getattr(sim.particles, name).to_numpy().astype(float)
+    return field[np.argsort(sim.particles.id.to_numpy())]
+
+
+def axis_weights(scene: Scene, x: np.ndarray, axis: int, nodes: int) -> tuple[np.ndarray, np.ndarray]:
+    """(w [n, node], dw/dx [n, node]) along one axis for all nodes; v_-1 = 2 v_0 - v_1 beyond walls."""
+    d = x[:, axis, None] / DX + MARGIN - np.arange(nodes)
+    parts = [part.copy() for part in shape_function(scene.shape)(d)]
+    for boundary in scene.loading.boundaries:
+        if boundary.axis == axis and scene.shape.width == 3:
+            wall, outward = round(boundary.position / DX) + MARGIN, -1 if boundary.side == "lower" else 1
+            for part in parts:
+                beyond = part[:, wall + outward].copy()
+                part[:, wall] += 2.0 * beyond
+                part[:, wall - outward] -= beyond
+                part[:, wall + outward] = 0.0
+    return parts[0], parts[1] / DX
+
+
+class Reference:
+    """One time step of the material point method as the books have it: dense weights, no runs, no stripes."""
+
+    def __init__(self, sim: Simulation, state: SimpleNamespace):
+        self.scene, self.s = sim.scene, state
+        shape, dim = sim.grid.nodes, sim.dim
+        axes = [axis_weights(self.scene, state.reference, d, shape[d]) for d in range(dim)]
+        letters = "ijk"[:dim]
+        product = ",".join("p" + c for c in letters) + "->p" + letters
+
+        def combined(*factors):
+            return np.einsum(product, *factors).reshape(len(state.reference), -1)
+
+        self.w = combined(*(a[0] for a in axes))
+        self.g = np.stack([combined(*(a[int(d == e)] for d, a in enumerate(axes))) for e in range(dim)], axis=-1)
+        index = np.indices(shape).reshape(dim, -1).T
+        self.node_x = (index - MARGIN) * DX
+        self.away = self.node_x[None] - state.reference[:, None]  # x_i - x_p
+        self.held = np.zeros((len(index), dim), dtype=bool)
+        for b in self.scene.loading.boundaries:
+            beyond = index[:, b.axis] - round(b.position / DX) - MARGIN
+            self.held[:, b.axis] |= beyond <= 0 if b.side == "lower" else beyond >= 0
+        self.mass_p = self.scene.density * state.volume
+        self.mass = self.w.T @ self.mass_p
+
+    def momentum(self) -> np.ndarray:
+        carried = self.s.v[:, None, :] + np.einsum("pde,pie->pid", self.s.C, self.away)
+        return np.einsum("p,pi,pid->id", self.mass_p, self.w, carried)
+
+    def force(self) -> np.ndarray:
+        dim = self.scene.dim
+        total = tensor(self.s.sigma) - self.s.q[:, None, None] * np.eye(3)
+        return -np.einsum("p,pde,pie->id", self.s.volume * self.s.J, total[:, :dim, :dim], self.g)
+
+    def hold(self, v) -> np.ndarray:
+        return np.where(self.held, 0.0, v)
+
+    def over_mass(self, field) -> np.ndarray:
+        return np.where(self.mass[:, None] > 0.0, field / np.maximum(self.mass, 1e-300)[:, None], 0.0)
+
+    def to_particles(self, v_i, dv_i) -> None:
+        transfer, s = self.scene.transfer, self.s
+        v_pic, dv = self.w @ v_i, self.w @ dv_i
+        if isinstance(transfer, Apic):
+            inertia = np.einsum("pi,pie->pe", self.w, self.away**2)
+            s.C = np.einsum("pi,id,pie->pde", self.w, v_i, self.away) / inertia[:, None, :]
+            s.v = v_pic
+        else:
+            assert isinstance(transfer, PicFlip), f"give the formula of the new transfer {transfer}"
+            s.v = v_pic + transfer.flip * (s.v + dv - v_pic)
+
+    def stress(self, v_i, dt) -> None:
+        """Hooke with the Hughes-Winget rotation, plane strain in the plane; then viscosity from the same gradient."""
+        s, elasticity, dim = self.s, self.scene.rock.elasticity, self.scene.dim
+        L = np.zeros((len(s.reference), 3, 3))
+        L[:, :dim, :dim] = np.einsum("id,pie->pde", v_i, self.g)
+        s.J = s.J * np.linalg.det(np.eye(3) + dt * L)
+        G = dt * L @ np.linalg.inv(np.eye(3) + 0.5 * dt * L)
+        W, D = 0.5 * (G - G.transpose(0, 2, 1)), 0.5 * (G + G.transpose(0, 2, 1))
+        R = np.linalg.solve(np.eye(3) - 0.5 * W, np.eye(3) + 0.5 * W)
+        lam, mu = lame(elasticity.E, elasticity.nu)
+        dilation = np.trace(D, axis1=1, axis2=2)[:, None, None]
+        full = R @ tensor(s.sigma) @ R.transpose(0, 2, 1) + lam * dilation * np.eye(3) + 2.0 * mu * D
+        s.sigma = np.stack([full[:, a, b] for a, b in PLACES[: s.sigma.shape[1]]], axis=1)
+        if self.scene.rock.viscosity.acts:
+            law, rate = self.scene.rock.viscosity, np.minimum(np.trace(L, axis1=1, axis2=2), 0.0)
+            speed, density = self.scene.wave_speed, self.scene.density / s.J
+            s.q = density * DX * (law.c1 * DX * rate**2 - law.c2 * speed * rate)
+
+    def step(self, order: str, dt: float) -> None:
+        momentum = self.momentum()
+        if order == "usf":
+            self.stress(self.hold(self.over_mass(momentum)), dt)
+            old = self.hold(self.over_mass(momentum))
+        else:
+            old = self.over_mass(momentum)
+        new = self.hold(old + dt * self.over_mass(self.force()))
+        self.to_particles(new, new - old)
+        if order == "usl":
+            self.stress(new, dt)
+        elif order == "musl":
+            self.stress(self.hold(self.over_mass(self.momentum())), dt)
+        else:
+            assert order == "usf", f"write the new order {order} into the reference"
+        self.s.u = dt * self.w @ new
+
+
+def tensor(packed) -> np.ndarray:
+    full = np.zeros((len(packed), 3, 3))
+    for k in range(packed.shape[1]):
+        a, b = PLACES[k]
+        full[:, a, b] = full[:, b, a] = packed[:, k]
+    return full
+
+
+def close(found, expected, eps: float, times: float = 1e4) -> None:
+    """Equal within `times` round-offs of the largest entry: sums of some 30 products, divided by nodes that hold as
+    little as a thousandth of a particle."""
+    np.testing.assert_allclose(found, expected, rtol=0.0, atol=times * eps * np.abs(expected).max())
+
+
+def compare_step(scene: Scene, sim: Simulation) -> None:
+    state = cloud(scene, sim)
+    reference, dt, eps = Reference(sim, state), scene.dt, epsilon(sim.real)
+    clear_nodes(sim)
+    scatter_all(sim, True, True)
+    size = -1, scene.dim
+    close(sim.nodes.mass.to_numpy().ravel(), reference.mass, eps, 100)
+    close(sim.nodes.v.to_numpy().reshape(size), reference.momentum(), eps, 100)
+    close(sim.nodes.f.to_numpy().reshape(size), reference.force(), eps, 100)
+    ORDERS[scene.order](sim, dt, dt, 1.0)
+    reference.step(scene.order, dt)
+    for name in ("u", "v", "sigma", "J", *("C",) * sim.particles.affine, *("q",) * sim.particles.viscous):
+        close(by_id(sim, name), getattr(state, name), eps)
+
+
+def free_scene(shape, transfer, order="musl") -> Scene:
+    return make_scene(shape, transfer, order=order, viscosity=BulkViscosity())
+
+
+def walled_scene(shape) -> Scene:
+    """One wall, so that both sides of the grid are met over all shapes; free material is far from it."""
+    return make_scene(shape, Apic(), boundaries=(UPPER if isinstance(shape, QuadraticBSpline) else LOWER,))
+
+
+@every_shape
+@every_transfer
+def test_musl_step_is_that_of_a_plain_loop(simulations, shape, transfer):
+    scene = walled_scene(shape) if isinstance(transfer, Apic) else free_scene(shape, transfer)
+    compare_step(scene, shared(simulations, scene))
+
+
+OTHER_ORDERS = [free_scene(QuadraticBSpline(), Apic(), "usf"), free_scene(Gimp(), PicFlip(flip=0.3), "usl")]
+
+
+@pytest.mark.parametrize("scene", OTHER_ORDERS, ids=lambda scene: scene.order)
+def test_step_of_the_other_orders_is_that_of_a_plain_loop(simulations, scene):
+    compare_step(scene, shared(simulations, scene))
+
+
+def test_every_order_is_compared():
+    assert {scene.order for scene in OTHER_ORDERS} | {"musl"} == set(ORDERS)
+
+
+def test_step_in_3d_is_that_of_a_plain_loop(simulations):
+    scene = make_scene(Linear(), Apic(), cells=(5, 4, 3), viscosity=BulkViscosity())
+    compare_step(scene, shared(simulations, scene))
+
+
+FREE = [free_scene(shape, PicFlip(flip=0.3)) for shape in variants(shapes, "weights")] + OTHER_ORDERS
+
+
+@pytest.mark.parametrize("scene", FREE, ids=lambda scene: f"{scene.order}-{name_of(scene.shape)}")
+def test_momentum_of_a_free_body_is_conserved_to_round_off(simulations, scene):
+    sim = shared(simulations, scene)
+    state = cloud(scene, sim)
+    mass = sim.density * state.volume[:, None]
+    start = np.sum(mass * state.v, axis=0)
+    if scene.transfer.affine:  # sum w_ip (x_i - x_p) = 0: the affine part carries none
+        start = Reference(sim, state).momentum().sum(axis=0)
+    for k in range(5):
+        ORDERS[scene.order](sim, scene.dt, k * scene.dt, 1.0)
+    v = by_id(sim, "v")
+    assert np.abs(np.sum(mass * v, axis=0) - start).max() < 1e-12 * np.sum(mass * np.abs(v))
+    assert np.abs(v - state.v).max() > 1e-2  # and something did happen
+
+
+@every_shape
+def test_apic_keeps_an_affine_velocity_field_exactly(simulations, shape):
+    """Also beside a frictionless wall, where this field has no normal velocity."""
+    scene = walled_scene(shape)
+    sim, wall = shared(simulations, scene), scene.loading.boundaries[0].position
+    state, gradient = cloud(scene, sim), np.array([[30.0, -70.0], [0.0, 20.0]])
+    state.C = np.broadcast_to(gradient, (COUNT, 2, 2))
+    state.v = (2.0, 0.0) + (state.reference - (0.3 * DX, wall)) @ gradient.T
+    state.sigma = np.zeros_like(state.sigma)
+    put(sim, state)
+    ORDERS["musl"](sim, 1e-9, 0.0, 1.0)
+    close(by_id(sim, "v"), state.v, epsilon(ti.f64))
+    # C divides differences of velocity by the spread D, as small as 1e-4 of a cell squared beside a node
+    close(by_id(sim, "C"), state.C, epsilon(ti.f64), 1e7)
+
+
+@every_shape
+def test_strayed_particles_reach_the_same_nodes_as_after_sorting_again(simulations, shape):
+    scene = free_scene(shape, PicFlip(flip=0.3))
+    sim = shared(simulations, scene)
+    state = cloud(scene, sim)
+    moves = np.random.default_rng(2).uniform(-0.45, 0.45, size=(COUNT, 2)) * DX
+    sim.particles.u.from_numpy(moves[sim.particles.id.to_numpy()])
+    home, now = (np.floor(x / DX - shape.shift) for x in (state.reference, state.reference + moves))
+    assert (home[:, 0] != now[:, 0]).sum() > COUNT // 10
+    found = []
+    for _ in range(2):
+        clear_nodes(sim)
+        scatter_all(sim, True, True)
+        found.append([f.to_numpy() for f in (sim.nodes.mass, sim.nodes.v, sim.nodes.f)])
+        sort_particles(sim)
+    assert found[0][0].sum() == pytest.approx(COUNT * sim.density * (0.5 * DX) ** 2, rel=1e-12)
+    for strayed, sorted_again in zip(*found, strict=True):
+        close(strayed, sorted_again, epsilon(ti.f64), 100)
+
+
+def test_sorting_changes_no_particle_and_puts_them_into_cell_order(simulations):
+    scene = walled_scene(QuadraticBSpline())
+    sim = shared(simulations, scene)
+    state = cloud(scene, sim)
+    order = sim.particles.id.to_numpy()
+    rows, columns = np.floor(state.reference[order] / DX - 0.5).T
+    assert (np.diff(rows * 1000 + columns) >= 0).all()
+    assert sorted(order) == list(range(COUNT))
+    for name in ("reference", "v", "sigma", "J", "C", "volume"):
+        np.testing.assert_array_equal(by_id(sim, name), getattr(state, name), err_msg=name)
+
+
+def test_one_thread_and_two_give_the_same_step_in_single_precision(restart_taichi):
+    """And that of the plain loop: f32 is compared here. Two threads meet at the borders of stripes."""
+    scene, found = free_scene(Linear(), PicFlip(flip=0.3)), []
+    for threads in (1, 2):
+        restart_taichi(ti.f32, threads)
+        sim = simulation(scene, ti.f32)
+        compare_step(scene, sim)
+        found.append([by_id(sim, name) for name in ("v", "sigma", "u")])
+    for one, two in zip(*found, strict=True):
+        close(two, one, epsilon(ti.f32))
