@@ -77,7 +77,12 @@ def _load(path: Path):
         raise
     except Exception as error:
         line = next(
-            (f.lineno for f in reversed(traceback.extract_tb(error.__traceback__)) if f.filename == str(path)), None
+            (
+                f.lineno
+                for f in reversed(traceback.extract_tb(error.__traceback__))
+                if Path(f.filename).resolve() == path.resolve()
+            ),
+            None,
         )
         place = f" line {line}" if line else ""
         raise SceneError(f"{path}{place} cannot be loaded: {type(error).__name__}: {error}") from None
@@ -86,7 +91,10 @@ def _load(path: Path):
 
 def keywords_of(path: Path) -> dict[str, object]:
     """Keyword -> default of a scene file's function."""
-    return {k: p.default for k, p in inspect.signature(_load(path).scene).parameters.items()}
+    function = getattr(_load(path), "scene", None)
+    if not callable(function):
+        raise SceneError(f"{path} defines no function scene(); it must return a Scene")
+    return {k: p.default for k, p in inspect.signature(function).parameters.items()}
 
 
 def _call(function, path: Path, overrides: dict, settings: dict[str, str]) -> Scene:
@@ -165,7 +173,7 @@ def _with_field(owner, key: str, path: list[str], text: str):
         raise SceneError(f"{key}: {name!r} is no field of a {type(owner).__name__}")
     names = [f.name for f in dataclasses.fields(owner)]
     if name not in names:
-        raise SceneError(_unknown(key, names, type(owner).__name__))
+        raise SceneError(_unknown(name, names, type(owner).__name__))
     old = getattr(owner, name)
     return replace(owner, **{name: _with_field(old, key, rest, text) if rest else _parse(key, text, old)})
 

@@ -31,7 +31,7 @@ def from_plain(value, where: str = "scene"):
         return tuple(from_plain(v, f"{where}[{k}]") for k, v in enumerate(value))
     if not isinstance(value, dict):
         return value
-    kind = KNOWN.get(value.get("type"))
+    kind = KNOWN.get(str(value.get("type")))
     if kind is None:
         raise SceneError(f"{where}: unknown type {value.get('type')!r}; known types are {', '.join(sorted(KNOWN))}")
     names = {f.name for f in dataclasses.fields(kind)}

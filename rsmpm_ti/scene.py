@@ -105,7 +105,7 @@ def main(arguments: list[str] | None = None) -> int:
             return 0
         return run(scene, options)
     except SceneError as error:
-        print(f"rsmpm_ti: {error}", file=sys.stderr)
+        print(f"rsmpm_ti: {' '.join(str(error).split())}", file=sys.stderr)
         return 2
     except UnstableRun as error:
         print(f"rsmpm_ti: the run became unstable: {error}", file=sys.stderr)
@@ -123,7 +123,7 @@ def run(scene: Scene, options: argparse.Namespace) -> int:
     out = Path(options.out) if options.out else Path("renders") / name
     console = Console(stderr=True)
     columns = (TextColumn("{task.description}"), BarColumn(), TimeElapsedColumn(), TimeRemainingColumn())
-    with Progress(*columns, console=console, transient=True) as bar:
+    with Progress(*columns, console=console, transient=True, disable=not console.is_terminal) as bar:
         task = bar.add_task("compiling", total=1.0)
 
         def show(p):

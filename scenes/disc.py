@@ -6,20 +6,21 @@ from rsmpm_ti.boundaries import Platen
 from rsmpm_ti.laws import Hooke, MohrCoulomb, Rock
 from rsmpm_ti.regions import Difference, Disc, Slit
 from rsmpm_ti.seeding import Jittered
+from rsmpm_ti.shape import Gimp
 from rsmpm_ti.spec import Body, Domain, Loading, Ramp, Scene, Schedule
 from rsmpm_ti.units import GPa, MPa, mm, ms
 
-QUICK = {"dx": 1.0 * mm, "flaw_width": 3.0 * mm}
+QUICK = {"dx": 1.0 * mm, "flaw_width": 2.0 * mm}
 
 
 def scene(
     *,
     flaw_angle: float = 90.0,
     flaw_length: float = 30.0 * mm,
-    flaw_width: float = 1.5 * mm,
+    flaw_width: float = 1.0 * mm,
     arc: float = 90.0,  # half-angle of the loaded arc [degrees]; 90: every node in touch with the platen row
     dx: float = 0.5 * mm,
-    strain_end: float = 1.5e-4,
+    strain_end: float = 1.1e-4,
     time_scale: float = 8.0,
 ) -> Scene:
     radius, centre = 50.0 * mm, (50.0 * mm, 50.0 * mm)
@@ -47,4 +48,5 @@ def scene(
             boundaries=platens, start=Ramp(time=0.3 * ms * time_scale), time_scale=time_scale, width=math.pi * radius
         ),
         schedule=Schedule(strain_end=strain_end),
+        shape=Gimp(),  # wide B-splines reach past the curved contact and tear rock beside the platens
     )

@@ -66,7 +66,7 @@ def hondros_centre(half_angle: float) -> tuple[float, float]:
     """(s_theta, s_r) over s0 at the centre of a disc pressed on two arcs of +-half_angle [degrees].
 
     s0 = P/(pi R B), P the force of a uniform radial pressure. Hondros (1959), Aust. J. Appl. Sci. 10:243, at r = 0.
-    Here s_theta is compression positive, so it is negative: the disc splits; s_r is tension positive.
+    Tension positive: s_theta splits the disc, s_r is compression along the load.
     """
     a = np.radians(half_angle)
     ratio = np.sin(2.0 * a) / a

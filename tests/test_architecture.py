@@ -12,7 +12,7 @@ PACKAGE = ROOT / "rsmpm_ti"
 
 LAYERS = """
     errors units snapshot tensors regions seeding shape transfer laws boundaries spec traversal state sorting kernels
-    measure stepper observe cracks output paint library simulate scene
+    measure stepper observe cracks summary output record paint frames library run scene
 """.split()
 """A module imports only from modules to the left of its own name."""
 
@@ -80,7 +80,7 @@ def allowed_imports(module: str) -> set[str]:
     """Names, without the leading "rsmpm_ti.", that a listed module may import from this package."""
     painters = [f"paint.{name}" for name in PAINT_LAYERS]
     if module == "":  # rsmpm_ti/__init__.py hands out the surface
-        return {"library", "simulate"}
+        return {"library", "run"}
     if module == "paint":
         return PAINT_SEES | set(painters)
     if module in painters:

@@ -1,0 +1,276 @@
+"""What a scene refuses, in words that name field, value and allowed range; and a scene as JSON and back."""
+
+import dataclasses
+import json
+import math
+import re
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from exact import p_wave_speed
+
+from rsmpm_ti.boundaries import Fixed, Platen, Wall
+from rsmpm_ti.errors import SceneError
+from rsmpm_ti.laws import Hooke, MohrCoulomb, Rock, Unbreakable
+from rsmpm_ti.library import available, load_scene
+from rsmpm_ti.record import KNOWN, from_plain, read_scene, to_plain
+from rsmpm_ti.regions import Box, Difference, Disc, Slit
+from rsmpm_ti.seeding import Lattice
+from rsmpm_ti.shape import Gimp, Linear, QuadraticBSpline
+from rsmpm_ti.spec import Affine, AtRest, Body, Domain, Loading, Output, Ramp, Scene, Schedule
+from rsmpm_ti.transfer import Apic, PicFlip
+
+NAN, INF = float("nan"), float("inf")
+SPEED = p_wave_speed(17e9, 0.14, 2600.0)
+DX = 0.5e-3
+SHIPPED = sorted(available())
+
+
+def make(**changes) -> Scene:
+    """Example 1 of the paper without its flaw, true density; `changes` by field, or by domain_, loading_ ... field."""
+    block = Box(lower=(0.0, 0.0), upper=(0.05, 0.1))
+    platens = (
+        Platen(axis=1, side="lower", position=0.0, speed=2.5e-3),
+        Platen(axis=1, side="upper", position=0.1, speed=-2.5e-3),
+    )
+    fields = {
+        "title": "block",
+        "domain": {"lower": (-0.005, 0.0), "upper": (0.055, 0.1), "dx": DX},
+        "bodies": (Body(region=block, seeding=Lattice()),),
+        "rock": Rock(density=2600.0, elasticity=Hooke(E=17e9, nu=0.14), criterion=Unbreakable()),
+        "loading": {"boundaries": platens, "start": Affine(), "width": 0.05},
+        "schedule": {"strain_end": 1e-3},
+        "shape": Linear(),
+    }
+    for name, value in changes.items():
+        owner, _, field = name.partition("_")
+        if field and owner in ("domain", "loading", "schedule"):
+            fields[owner][field] = value
+        else:
+            fields[name] = value
+    kinds = {"domain": Domain, "loading": Loading, "schedule": Schedule}
+    return Scene(**{k: kinds[k](**v) if isinstance(v, dict) else v for k, v in fields.items()})
+
+
+def platens(**changes) -> tuple[Platen, Platen]:
+    lower, upper = make().loading.boundaries
+    return lower, replace(upper, **changes)
+
+
+def body(**changes) -> tuple[Body]:
+    return (replace(make().bodies[0], **changes),)
+
+
+def refusal(build) -> str:
+    with pytest.raises(SceneError) as refused:
+        build()
+    message = str(refused.value)
+    assert "\n" not in message
+    return message
+
+
+BY_FIELD = [
+    *[("domain.dx", lambda v=v: make(domain_dx=v)) for v in (0.0, -DX, NAN, INF)],
+    ("domain.upper", lambda: make(domain_upper=(0.055, -0.1))),
+    ("domain.upper", lambda: make(domain_upper=(0.055, INF))),
+    ("domain.upper", lambda: make(domain_upper=(0.055, 0.1, 0.1))),
+    ("domain.upper", lambda: Domain(lower=(0.0,), upper=(1.0,), dx=0.1)),
+    ("domain.upper", lambda: Domain(lower=(0.0, 0.0), upper=(0.01, 1.0), dx=0.1)),
+    ("domain.grid", lambda: make(domain_grid="adaptive")),
+    *[("loading.time_scale", lambda v=v: make(loading_time_scale=v)) for v in (0.5, 0.0, -1.0, 1e4, NAN)],
+    *[("loading.width", lambda v=v: make(loading_width=v)) for v in (0.0, -1.0, NAN)],
+    ("loading.body_force", lambda: make(loading_body_force=(0.0, 0.0, -9.81))),
+    *[("schedule.strain_end", lambda v=v: make(schedule_strain_end=v)) for v in (0.0, 0.5, -0.7, NAN)],
+    ("schedule.strain_end", lambda: make(schedule_strain_end=-1e-3)),  # the platens compress
+    ("schedule.strain_end", lambda: make(loading_boundaries=platens(speed=2.5e-3))),  # both move alike: no straining
+    *[("schedule.t_end", lambda v=v: Schedule(t_end=v)) for v in (0.0, -1.0, NAN, INF)],
+    *[("schedule.dt", lambda v=v: make(schedule_dt=v)) for v in (-1e-8, 0.0, NAN)],
+    *[("schedule.cfl", lambda v=v: make(schedule_cfl=v)) for v in (0.0, -0.5, NAN, INF, 1.38, 10.0)],
+    ("schedule.cfl", lambda: make(shape=QuadraticBSpline(), schedule_cfl=1.71)),
+    ("schedule.cfl", lambda: make(shape=Gimp(), schedule_cfl=1.71)),
+    ("schedule.cfl", lambda: make(shape=Gimp(), order="usl", schedule_cfl=0.61)),
+    ("schedule.dt", lambda: make(schedule_dt=1.4 * DX / SPEED)),
+    *[("schedule.rows", lambda v=v: make(schedule_rows=v)) for v in (0, -1, 1.5, 10**7)],
+    *[("start.time", lambda v=v: Ramp(time=v)) for v in (0.0, -1e-3, NAN)],
+    ("start.time", lambda: make(loading_start=Ramp(time=4.9 * 0.1 / SPEED))),
+    ("scene.order", lambda: make(order="leapfrog")),
+    ("shape.half_width", lambda: make(shape=Gimp(half_width=0.5))),
+    ("shape.half_width", lambda: Gimp(half_width=0.0)),
+    ("shape.half_width", lambda: Gimp(half_width=0.51)),
+    ("transfer.flip", lambda: PicFlip(flip=1.01)),
+    ("transfer.flip", lambda: PicFlip(flip=NAN)),
+    ("bodies[0].velocity", lambda: make(bodies=body(velocity=(1.0, 0.0, 0.0)))),
+    ("boundaries[1].position", lambda: make(loading_boundaries=platens(position=0.1001))),
+    ("boundaries[1].axis", lambda: make(loading_boundaries=platens(axis=2))),
+    ("platen.axis", lambda: platens(axis=3)),
+    ("platen.side", lambda: platens(side="top")),
+    ("platen.position", lambda: platens(position=NAN)),
+    ("platen.speed", lambda: platens(speed=INF)),
+    ("platen.friction", lambda: platens(friction=-0.1)),
+    ("platen.span", lambda: platens(span=(0.03, 0.02))),
+    ("wall.axis", lambda: Wall(axis=-1, side="lower", position=0.0)),
+    ("fixed.side", lambda: Fixed(axis=0, side="left", position=0.0)),
+    *[("output.frames", lambda v=v: Output(frames=v)) for v in (-1, 1.5, 10_001)],
+    ("output.vtu", lambda: Output(vtu=-1)),
+    ("output.painter", lambda: Output(painter="opengl")),
+    *[("output.stress_limit", lambda v=v: Output(stress_limit=v)) for v in (0.0, NAN)],
+]
+
+
+@pytest.mark.parametrize("field, build", BY_FIELD, ids=[f"{k}-{field}" for k, (field, _) in enumerate(BY_FIELD)])
+def test_refusal_names_field_value_and_range(field, build):
+    assert re.match(rf"{re.escape(field)} = \S.* is refused: it must be \S", refusal(build))
+
+
+def test_example_itself_is_accepted():
+    assert make().dim == 2 and len(make().particles()[0]) == 80_000
+
+
+@pytest.mark.parametrize("dt", [1.91e-5, 1.9103e-5])
+def test_paper_time_step_is_refused_with_the_reason(dt):
+    message = refusal(lambda: make(schedule_dt=dt))
+    assert message.startswith(f"schedule.dt = {dt:g} s is refused")
+    assert "the paper prints this value" in message
+    assert "100 times dx/c_p = 1.9103e-07 s" in message
+    at_most = float(re.search(r"use at most (\S+) s", message)[1])
+    assert make(schedule_dt=0.999 * at_most).dt == pytest.approx(0.999 * at_most)
+
+
+@pytest.mark.parametrize("shape", [Linear(), Gimp(), QuadraticBSpline()], ids=lambda s: type(s).__name__)
+def test_cfl_that_the_refusal_advises_is_accepted(shape):
+    cfl = float(re.search(r"use cfl <= (\S+)$", refusal(lambda: make(shape=shape, schedule_cfl=5.0)))[1])
+    assert make(shape=shape, schedule_cfl=cfl - 0.005).dt == pytest.approx((cfl - 0.005) * DX / SPEED, rel=1e-9)
+
+
+def test_usl_with_linear_functions_is_refused_with_alternatives():
+    message = refusal(lambda: make(order="usl"))
+    assert "scene.order = 'usl' with Linear" in message and "'musl'" in message
+
+
+def test_platen_off_the_grid_is_refused_with_the_nearest_plane():
+    message = refusal(lambda: make(loading_boundaries=platens(position=0.1002)))
+    nearest = float(re.search(r"the nearest is (\S+) m", message)[1])
+    assert nearest == pytest.approx(0.1, abs=1e-12)
+
+
+@pytest.mark.parametrize("move", [(-0.006, 0.0), (0.0051, 0.0), (0.0, -1e-4), (0.0, 1e-4)])
+def test_body_outside_the_domain_is_refused_with_both_boxes(move):
+    region = Box(lower=(0.0 + move[0], move[1]), upper=(0.05 + move[0], 0.1 + move[1]))
+    message = refusal(lambda: make(bodies=body(region=region)))
+    assert "bodies[0].region" in message and "outside the domain" in message and "-0.005" in message
+
+
+def test_region_of_another_dimension_is_refused():
+    message = refusal(lambda: make(bodies=body(region=Box(lower=(0.0,) * 3, upper=(0.01,) * 3))))
+    assert "bodies[0].region has 3 dimensions, domain has 2" in message
+
+
+def test_scene_without_material_is_refused():
+    assert "scene.bodies is empty" in refusal(lambda: make(bodies=()))
+    tiny = make(bodies=body(region=Disc(centre=(0.025, 0.05), radius=1e-5)))
+    assert "bodies[0].region holds no particle" in refusal(tiny.particles)
+
+
+def test_glued_slit_is_refused_when_particles_are_made():
+    flaw = Slit(centre=(0.025, 0.05), length=0.015, width=0.5e-3, angle=45.0)
+    region = Difference(whole=make().bodies[0].region, removed=(flaw,))
+    assert "slit.width" in refusal(make(bodies=body(region=region)).particles)
+
+
+@pytest.mark.parametrize(
+    "build, words",
+    [
+        (lambda: make(schedule={}), "exactly one of strain_end"),
+        (lambda: Schedule(strain_end=1e-3, t_end=1.0), "exactly one of strain_end"),
+        (lambda: make(loading_boundaries=()), "two platens that face each other"),
+        (lambda: make(loading_boundaries=platens(side="lower")), "two platens that face each other"),
+        (lambda: make(schedule={"t_end": 1e-4}, loading={"start": Affine()}), "two platens that face each other"),
+        (lambda: make(loading_width=None), "loading.width is missing"),
+    ],
+)
+def test_loading_that_says_too_little_or_too_much_is_refused(build, words):
+    assert words in refusal(build)
+
+
+def test_derived_numbers():
+    scene = make(loading_time_scale=4.0)
+    assert scene.wave_speed == pytest.approx(SPEED / 4.0, rel=1e-12)
+    assert scene.density == pytest.approx(2600.0 * 16.0)
+    assert scene.dt == pytest.approx(0.5 * DX * 4.0 / SPEED, rel=1e-12)
+    assert scene.loading.strain_rate == pytest.approx(5e-3 / 0.1)
+    assert scene.t_end == pytest.approx(1e-3 / 0.05)
+    assert scene.steps == math.ceil(scene.t_end / scene.dt)
+    # a smooth-step ramp of length T covers half of what full speed would: the end comes T/2 later
+    ramp = make(loading_start=Ramp(time=1e-3))
+    assert ramp.t_end == pytest.approx(1e-3 / 0.05 + 0.5e-3)
+    assert isinstance(scene.elastic().rock.criterion, Unbreakable)
+
+
+def through_json(scene: Scene) -> Scene:
+    return from_plain(json.loads(json.dumps(to_plain(scene), allow_nan=False)))
+
+
+@pytest.mark.parametrize("name", SHIPPED)
+@pytest.mark.parametrize("quick", [False, True])
+def test_shipped_scene_survives_json(name, quick):
+    scene = load_scene(name, quick=quick)
+    assert through_json(scene) == scene
+
+
+def test_scene_of_rare_parts_survives_json():
+    scene = make(
+        shape=Gimp(),
+        transfer=Apic(),
+        order="usf",
+        schedule={"t_end": 1e-4, "dt": 1e-8},
+        loading={
+            "boundaries": (*platens(span=(0.01, 0.02), friction=0.2), Fixed(axis=0, side="lower", position=0.0)),
+            "start": AtRest(),
+            "body_force": (0.0, -9.81),
+        },
+        rock=Rock(
+            density=2600.0,
+            elasticity=Hooke(E=17e9, nu=0.14),
+            criterion=MohrCoulomb(cohesion=5.95e6, friction_angle=40.0, tensile_strength=2e6),
+        ),
+    )
+    assert through_json(scene) == scene
+
+
+@pytest.mark.parametrize("kind", ["os.system", "Path", "Simulation", "object", "__import__", None, 7, ["Box"], {}])
+def test_unknown_type_is_refused(kind):
+    plain = to_plain(make())
+    plain["rock"]["type"] = kind
+    assert "scene.rock" in refusal(lambda: from_plain(plain))
+
+
+def test_unknown_missing_and_wrong_fields_are_refused_by_place():
+    plain = to_plain(make())
+    assert "scene.rock.elasticity: Hooke has no field ['G']; it has ['E', 'nu']" in refusal(
+        lambda: from_plain({**plain, "rock": {**plain["rock"], "elasticity": {"type": "Hooke", "E": 1.0, "G": 1.0}}})
+    )
+    assert "scene.domain" in refusal(lambda: from_plain({**plain, "domain": {"type": "Domain", "dx": 1.0}}))
+    assert "elasticity.nu" in refusal(
+        lambda: from_plain({**plain, "rock": {**plain["rock"], "elasticity": {"type": "Hooke", "E": 1.0, "nu": 0.5}}})
+    )
+    refusal(lambda: from_plain({**plain, "schedule": 3.0}))
+    refusal(lambda: from_plain({**plain, "shape": "Linear"}))
+
+
+def test_only_dataclasses_of_scenes_can_be_named():
+    assert all(dataclasses.is_dataclass(kind) and kind.__module__.startswith("rsmpm_ti.") for kind in KNOWN.values())
+    assert "Scene" in KNOWN and "Simulation" not in KNOWN
+
+
+@pytest.mark.parametrize("text", ["", "{", "[1, 2]", "3", '"Scene"', '{"type": "Linear"}', '{"scene": null}'])
+def test_file_that_holds_no_scene_is_refused(tmp_path, text):
+    path = tmp_path / "scene.json"
+    path.write_text(text)
+    assert refusal(lambda: read_scene(path))
+
+
+def test_positions_of_a_shipped_scene_do_not_change_by_recording():
+    scene = load_scene(SHIPPED[0], quick=True)
+    for one, two in zip(scene.particles(), through_json(scene).particles(), strict=True):
+        np.testing.assert_array_equal(one, two)
