@@ -1,6 +1,7 @@
 """When to paint, and painting: frames at equal strain or time, more when failed particles jump; movie and VTU."""
 
 import math
+from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 import numpy as np
@@ -15,6 +16,10 @@ from rsmpm_ti.spec import Scene
 
 JUMP_SHARE, JUMP_GROWTH = 0.0003, 0.05
 """A frame is added when failures since the last one exceed this share of all particles and of all failures so far."""
+
+
+WAITING = 4
+"""Pictures or VTU files that may wait to be written."""
 
 
 class Timetable:
@@ -68,25 +73,40 @@ class Gallery:
                 self._movie = Movie(out / f"{name}.mp4")
             except RuntimeError as error:  # no encoder: frames still come
                 self.warning = str(error)
+        self._writer, self._pending = ThreadPoolExecutor(max_workers=1), []
         self.count = 0
         self._vtus: list[tuple[float, str]] = []
 
     def frame(self, snapshot: Snapshot, history: np.ndarray) -> None:
         images = {kind: painter.paint(snapshot, history, self.count) for kind, painter in self.painters.items()}
-        for kind, image in images.items():
-            write_png(self._out / "frames" / f"{kind}_{self.count:04d}.png", image, painter=self._scene.output.painter)
-        if self._movie is not None:
-            self._movie.add(images["stress"], images["cracks"])
+        self._later(self._write_frame, images, self.count)
         self.count += 1
 
+    def _write_frame(self, images: dict[str, np.ndarray], number: int) -> None:
+        for kind, image in images.items():
+            write_png(self._out / "frames" / f"{kind}_{number:04d}.png", image, painter=self._scene.output.painter)
+        if self._movie is not None:
+            self._movie.add(images["stress"], images["cracks"])
+
     def vtu(self, snapshot: Snapshot) -> None:
-        name = f"particles_{len(self._vtus):04d}.vtu"
-        write_vtu(self._out / name, snapshot)
-        self._vtus.append((snapshot.time, name))
-        write_pvd(self._out / "particles.pvd", self._vtus)
+        self._vtus.append((snapshot.time, f"particles_{len(self._vtus):04d}.vtu"))
+        self._later(self._write_vtu, snapshot, list(self._vtus))
+
+    def _write_vtu(self, snapshot: Snapshot, entries: list[tuple[float, str]]) -> None:
+        write_vtu(self._out / entries[-1][1], snapshot)
+        write_pvd(self._out / "particles.pvd", entries)
+
+    def _later(self, work, *arguments) -> None:
+        """Compressing and encoding go on beside the solver; at most a few pictures wait, so memory stays flat."""
+        while len(self._pending) >= WAITING:
+            self._pending.pop(0).result()
+        self._pending.append(self._writer.submit(work, *arguments))
 
     def close(self, snapshot: Snapshot, history: np.ndarray) -> None:
-        """Finish the movie, paint summary.png, give the painters' memory back."""
+        """Finish what waits and the movie, paint summary.png, give the painters' memory back."""
+        for pending in self._pending:
+            pending.result()
+        self._writer.shutdown()
         if self._movie is not None:
             self._movie.close()
         summary_picture(self._out / "summary.png", snapshot, history, self.painters["cracks"], self._scene.title)

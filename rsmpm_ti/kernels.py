@@ -6,9 +6,9 @@ particles with the same base node keeps its node values in locals, loaded or add
 
 import taichi as ti
 
-from rsmpm_ti.laws import pressure_energy
+from rsmpm_ti.material import update_stress
 from rsmpm_ti.shape import fold_at_walls, tensor_gradient, tensor_weight
-from rsmpm_ti.tensors import extreme_principals, in_plane_times, isotropic, midpoint_gradient
+from rsmpm_ti.tensors import in_plane_times, isotropic
 
 SMALL_MASS = 1e-12
 """Nodes lighter than this share of a full cell hold nothing: their velocity would be round-off."""
@@ -31,7 +31,8 @@ def spread(sim: ti.template(), w, r):
     for k in ti.static(range(sim.shape.width)):
         for d in ti.static(range(sim.dim)):
             D[d] += w[k, d] * (k - r[d]) ** 2
-    return ti.max(D, 1e-6)
+    # D is negative for a particle pressed beyond a wall, and only then; it vanishes on the wall itself
+    return ti.select(ti.abs(D) > 1e-6, D, 1e-6)
 
 
 @ti.func
@@ -227,59 +228,6 @@ def move(sim: ti.template(), p, v_pic, dt, slot):
         b = ti.Vector(sim.acceleration)
         power = (v_pic - 0.5 * dt * b).dot(b) * sim.density * particles.volume[p]
         ledger.body_work[slot] += ti.cast(dt * power, ti.f64)
-
-
-@ti.func
-def record_failure(sim: ti.template(), p, mode, extremes, released, time):
-    particles, events = sim.particles, sim.events
-    e = ti.atomic_add(events.count[None], 1)
-    events.time[e] = time
-    events.x[e] = particles.reference[p] + particles.u[p]
-    events.sigma_1[e], events.sigma_3[e] = extremes[0], extremes[1]
-    events.released[e] = released
-    events.mode[e] = mode
-    events.id[e] = particles.id[p]
-
-
-@ti.func
-def update_stress(sim: ti.template(), p, L, dt, time, slot):
-    """Elastic step, then the failure check of the paper: every particle, every step, tension first.
-
-    A failed particle keeps s = 0 and a pressure from total J; it has no artificial viscosity (paper sec. 3.2).
-    Returns the energy that viscosity took [J].
-    """
-    particles, ledger, rock = sim.particles, sim.ledger, sim.rock
-    bulk = ti.static(rock.elasticity.bulk)
-    J = particles.J[p] * (ti.Matrix.identity(float, sim.dim) + dt * L).determinant()
-    particles.J[p] = J
-    failed = False
-    if ti.static(particles.breaks):
-        failed = particles.mode[p] != 0
-    q, lost = 0.0, 0.0
-    if not failed:
-        sigma = rock.elasticity.stress(particles.sigma[p], midpoint_gradient(dt * L))
-        if ti.static(particles.breaks):
-            extremes = extreme_principals(sigma)
-            mode = rock.criterion.mode(extremes[0], extremes[1])
-            if mode != 0:
-                failed = True
-                particles.mode[p] = mode
-                kept = pressure_energy(rock.after_failure.pressure(bulk, J), bulk, J)
-                released = particles.volume[p] * (J * rock.elasticity.energy(sigma) - kept)
-                ledger.released[slot] += ti.cast(released, ti.f64)
-                record_failure(sim, p, mode, extremes, released, time)
-        if ti.static(particles.viscous):
-            if not failed:
-                q = rock.viscosity.pressure(L.trace(), sim.density / J, sim.grid.dx, sim.wave_speed)
-                lost = -dt * q * L.trace() * particles.volume[p] * J
-        particles.sigma[p] = sigma
-    if ti.static(particles.breaks):
-        if failed:
-            pressure = rock.after_failure.pressure(bulk, J)
-            particles.sigma[p] = isotropic(-pressure, particles.sigma.n)
-    if ti.static(particles.viscous):
-        particles.q[p] = q
-    return lost
 
 
 @ti.func

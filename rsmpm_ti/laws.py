@@ -11,7 +11,7 @@ from dataclasses import dataclass
 import taichi as ti
 
 from rsmpm_ti.errors import refuse
-from rsmpm_ti.tensors import double_contraction, isotropic, rotate, symmetric, trace
+from rsmpm_ti.tensors import double_contraction, hughes_winget, isotropic, trace
 
 
 def _positive(owner: str, **values: float) -> None:
@@ -65,9 +65,9 @@ class Hooke:
 
     @ti.func
     def stress(self, sigma, G):
-        """New packed stress from the step's midpoint displacement gradient G, dim x dim."""
-        d_eps = symmetric(G)
-        return rotate(sigma, G) + isotropic(self.lam * trace(d_eps), sigma.n) + 2.0 * self.mu * d_eps
+        """New packed stress from the step's displacement gradient G = dt grad v, dim x dim."""
+        rotated, d_eps = hughes_winget(sigma, G)
+        return rotated + isotropic(self.lam * trace(d_eps), sigma.n) + 2.0 * self.mu * d_eps
 
     @ti.func
     def energy(self, sigma):

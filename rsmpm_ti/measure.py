@@ -2,16 +2,20 @@
 
 from dataclasses import dataclass
 
+import numpy as np
 import taichi as ti
 
 from rsmpm_ti.laws import pressure_energy
-from rsmpm_ti.sorting import cell_key
-from rsmpm_ti.state import Simulation
+from rsmpm_ti.sorting import cell_key, row_of_key
+from rsmpm_ti.state import SCALARS, Simulation
+
+FIXED = len(SCALARS) + 2
+"""Places in the report before the momentum: the scalars and the two failure counts."""
 
 
 @dataclass(frozen=True)
 class Survey:
-    """Sums and extremes over particles. Energies [J] (per metre of thickness in 2D)."""
+    """Sums and extremes over particles, and the ledger so far. Energies [J] (per metre of thickness in 2D)."""
 
     kinetic: float
     elastic: float
@@ -21,11 +25,20 @@ class Survey:
     sick: int  # particles with a non-finite value or outside the domain
     sick_id: int  # one of them, -1 if none
     strays: int  # particles that left the cell they were sorted into
-    momentum: tuple[float, ...]  # [kg m/s]
+    far_strays: int  # those among them that are more than half a cell beyond its row
+    momentum: np.ndarray  # [kg m/s], [dim]
+    impulse: np.ndarray  # of each boundary on the body since the start [N s], [boundaries, dim]
+    work: float  # of boundaries and body force since the start [J]
+    dissipated: float  # by failure and viscosity since the start [J]
+    failed_tension: int
+    failed_shear: int
 
 
 @ti.kernel
 def _survey(sim: ti.template()):
+    """Fill sim.report; its fields first, the vector of all of them last, so that one copy brings them to Python."""
+    for k in range(1):
+        clear_report(sim, k)
     particles, grid, rock, report = sim.particles, sim.grid, sim.rock, sim.report
     for p in particles.key:
         v = particles.v[p]
@@ -47,8 +60,8 @@ def _survey(sim: ti.template()):
             if ti.math.isnan(sigma[k]) or ti.math.isinf(sigma[k]):
                 sick = 1
         if sick == 1:
-            report.sick[None] += 1
-            report.sick_id[None] = particles.id[p]
+            report.sick[None] += 1.0
+            report.sick_id[None] = ti.cast(particles.id[p], ti.f64)
         else:
             report.kinetic[None] += ti.cast(0.5 * m_p * v.dot(v), ti.f64)
             report.elastic[None] += ti.cast(particles.volume[p] * stored, ti.f64)
@@ -57,33 +70,54 @@ def _survey(sim: ti.template()):
             ti.atomic_max(report.J_max[None], ti.cast(J, ti.f64))
             for d in ti.static(range(sim.dim)):
                 report.momentum[d][None] += ti.cast(m_p * v[d], ti.f64)
-        if cell_key(sim, grid.base(xi, sim.shape)) != particles.key[p]:
-            report.strays[None] += 1
+        base = grid.base(xi, sim.shape)
+        if cell_key(sim, base) != particles.key[p]:
+            report.strays[None] += 1.0
+            depth = xi[0] - sim.shape.shift - row_of_key(sim, particles.key[p])
+            if depth < -0.5 or depth > 1.5:
+                report.far_strays[None] += 1.0
+    for b in range(sim.report.boundary_count):
+        for d in ti.static(range(sim.dim)):
+            sim.report.values[FIXED + sim.dim + b * sim.dim + d] = sim.ledger.impulse[b][d]
+        sim.report.work[None] += sim.ledger.work[b]
+    for slot in sim.ledger.viscous:
+        sim.report.work[None] += sim.ledger.body_work[slot]
+        sim.report.dissipated[None] += sim.ledger.viscous[slot] + sim.ledger.released[slot]
+    for k in range(1):
+        collect(sim, k)
+
+
+@ti.func
+def clear_report(sim: ti.template(), k):
+    report = sim.report
+    for field in ti.static(report.sums):
+        field[None] = 0.0
+    report.J_min[None], report.sick_id[None] = 1e30, -1.0
+
+
+@ti.func
+def collect(sim: ti.template(), k):
+    report, events = sim.report, sim.events
+    for place, field in ti.static(enumerate(report.scalars)):
+        report.values[place] = field[None]
+    for mode in ti.static(range(2)):
+        report.values[FIXED - 2 + mode] = ti.cast(events.by_mode[mode + 1], ti.f64)
+    for d in ti.static(range(sim.dim)):
+        report.values[FIXED + d] = report.momentum[d][None]
 
 
 def survey(sim: Simulation) -> Survey:
     """Survey the particles as they are now."""
-    report = sim.report
-    for field in (
-        report.kinetic,
-        report.elastic,
-        report.speed,
-        report.J_max,
-        report.sick,
-        report.strays,
-        *report.momentum,
-    ):
-        field[None] = 0
-    report.J_min[None], report.sick_id[None] = 1e30, -1
     _survey(sim)
+    values, dim = sim.report.values.to_numpy(), sim.dim
+    scalars = dict(zip(SCALARS, values, strict=False))
+    whole = {name: int(scalars.pop(name)) for name in ("sick", "sick_id", "strays", "far_strays")}
+    modes = values[len(SCALARS) : FIXED]
     return Survey(
-        kinetic=report.kinetic[None],
-        elastic=report.elastic[None],
-        speed=report.speed[None],
-        J_min=report.J_min[None],
-        J_max=report.J_max[None],
-        sick=report.sick[None],
-        sick_id=report.sick_id[None],
-        strays=report.strays[None],
-        momentum=tuple(component[None] for component in report.momentum),
+        **scalars,
+        **whole,
+        failed_tension=int(modes[0]),
+        failed_shear=int(modes[1]),
+        momentum=values[FIXED : FIXED + dim],
+        impulse=values[FIXED + dim :].reshape(-1, dim),
     )

@@ -83,7 +83,7 @@ class History:
         self._sim, self._clock = sim, clock
         self.rows: list[tuple[float, ...]] = []
         self._energy_start = start.kinetic + start.elastic
-        self._impulse = sim.ledger.impulse.to_numpy()
+        self._impulse = start.impulse
         self._time = clock.time
         loading = sim.scene.loading
         self._platens = None
@@ -96,24 +96,20 @@ class History:
         return self._energy_start
 
     def record(self, survey: Survey) -> None:
-        sim, clock, ledger = self._sim, self._clock, self._sim.ledger
-        impulse = ledger.impulse.to_numpy()
+        clock, loading = self._clock, self._sim.scene.loading
         bottom = top = np.nan
         if self._platens is not None and clock.time > self._time:
-            axis = sim.scene.loading.platens[0].axis
-            force = (impulse - self._impulse)[:, axis] / (clock.time - self._time) / sim.scene.loading.width
+            axis = loading.platens[0].axis
+            force = (survey.impulse - self._impulse)[:, axis] / (clock.time - self._time) / loading.width
             # the lower plate pushes the specimen along +axis in compression, the upper one along -axis
             bottom, top = force[self._platens[0]], -force[self._platens[1]]
-        work = ledger.work.to_numpy().sum() + ledger.body_work.to_numpy().sum()
-        lost = ledger.viscous.to_numpy().sum() + ledger.released.to_numpy().sum()
-        mode = sim.events.mode.to_numpy()[: sim.events.count[None]]
         self.rows.append(
             (
-                clock.time, clock.strain, top, bottom, survey.kinetic, survey.elastic, lost, work,
-                float(np.sum(mode == 1)), float(np.sum(mode == 2)), clock.dt,
+                clock.time, clock.strain, top, bottom, survey.kinetic, survey.elastic, survey.dissipated, survey.work,
+                float(survey.failed_tension), float(survey.failed_shear), clock.dt,
             )
         )  # fmt: skip
-        self._impulse, self._time = impulse, clock.time
+        self._impulse, self._time = survey.impulse, clock.time
 
     def table(self) -> np.ndarray:
         """Structured array with the fields HISTORY_COLUMNS."""

@@ -15,6 +15,15 @@ def cell_key(sim: ti.template(), base):
     return key
 
 
+@ti.func
+def row_of_key(sim: ti.template(), key):
+    """Row along the first axis, which stripes are made of."""
+    row = key
+    for d in ti.static(range(1, sim.dim)):
+        row //= sim.grid.nodes[sim.dim - d]
+    return row
+
+
 @ti.kernel
 def cell_keys(sim: ti.template()):
     particles, grid = sim.particles, sim.grid

@@ -131,7 +131,7 @@ class Events:
     """Failure events in the order in which they happen; at most one per particle."""
 
     def __init__(self, scene: Scene, capacity: int, real):
-        self.count = ti.field(ti.i32, ())
+        self.count, self.by_mode = ti.field(ti.i32, ()), ti.field(ti.i32, 3)
         capacity = capacity if scene.rock.criterion.breaks else 1
         self.time, self.sigma_1 = ti.field(ti.f64, capacity), ti.field(real, capacity)
         self.sigma_3, self.released = ti.field(real, capacity), ti.field(real, capacity)
@@ -151,15 +151,34 @@ class Ledger:
         self.viscous, self.released = ti.field(ti.f64, slots), ti.field(ti.f64, slots)
 
 
+SCALARS = (
+    "kinetic",
+    "elastic",
+    "speed",
+    "J_min",
+    "J_max",
+    "sick",
+    "sick_id",
+    "strays",
+    "row_strays",
+    "work",
+    "dissipated",
+)
+"""Numbers of a survey, in the order in which the report lists them."""
+
+
 @ti.data_oriented
 class Report:
-    """Scalar fields that the survey sums into."""
+    """What a survey sums into: scalar fields, because Taichi reduces those per thread, and one vector of them all."""
 
-    def __init__(self, dim: int):
-        self.kinetic, self.elastic, self.speed = (ti.field(ti.f64, ()) for _ in range(3))
-        self.J_min, self.J_max = ti.field(ti.f64, ()), ti.field(ti.f64, ())
-        self.sick, self.sick_id, self.strays = (ti.field(ti.i32, ()) for _ in range(3))
-        self.momentum = tuple(ti.field(ti.f64, ()) for _ in range(dim))
+    def __init__(self, scene: Scene):
+        for name in SCALARS:
+            setattr(self, name, ti.field(ti.f64, ()))
+        self.momentum = tuple(ti.field(ti.f64, ()) for _ in range(scene.dim))
+        self.scalars = tuple(getattr(self, name) for name in SCALARS)
+        self.sums = (*self.scalars, *self.momentum)
+        self.boundary_count = len(scene.loading.boundaries)
+        self.values = ti.field(ti.f64, len(SCALARS) + 2 + scene.dim + scene.dim * max(1, self.boundary_count))
 
 
 @ti.data_oriented
@@ -185,7 +204,7 @@ class Simulation:
         self.traversal = Chunks(count) if gpu else Stripes(self.grid.nodes[0])
         self.nodes = Nodes(scene, self.grid, real, use_sparse_grid(scene, count))
         self.events, self.ledger = Events(scene, count, real), Ledger(scene, self.traversal.count)
-        self.report = Report(scene.dim)
+        self.report = Report(scene)
         self._fill(scene, positions)
 
     def _fill(self, scene: Scene, positions: list[np.ndarray]) -> None:

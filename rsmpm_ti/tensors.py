@@ -120,6 +120,31 @@ def rotate(s: ti.template(), G: ti.template()):
 
 
 @ti.func
+def hughes_winget(s: ti.template(), G: ti.template()):
+    """(R s R^T, d_eps) of one step with displacement gradient G = dt grad v, dim x dim; d_eps is packed.
+
+    Hughes & Winget (1980), eq. 19 and 25. In 2D the midpoint gradient G (1 + G/2)^-1 is M/d with
+    M = G + det(G)/2 1 and d = det(1 + G/2), and everything follows from one division.
+    """
+    if ti.static(G.n == 2):
+        q = G[0, 0] * G[1, 1] - G[0, 1] * G[1, 0]
+        d = 1.0 + 0.5 * (G[0, 0] + G[1, 1]) + 0.25 * q
+        n = 0.25 * (G[1, 0] - G[0, 1])  # d x tan of half the angle of rotation
+        D, C, S = d * d + n * n, d * d - n * n, 2.0 * n * d
+        inverse = 1.0 / (d * D * D)
+        inv_d, inv_DD = inverse * D * D, inverse * d
+        cos_2, sin_2 = (C * C - S * S) * inv_DD, 2.0 * C * S * inv_DD
+        centre, a, b = 0.5 * (s[0] + s[1]), 0.5 * (s[0] - s[1]), s[3]
+        turned, shear = a * cos_2 - b * sin_2, b * cos_2 + a * sin_2
+        return ti.Vector([centre + turned, centre - turned, s[2], shear]), ti.Vector(
+            [(G[0, 0] + 0.5 * q) * inv_d, (G[1, 1] + 0.5 * q) * inv_d, 0.0, 0.5 * (G[0, 1] + G[1, 0]) * inv_d]
+        )
+    else:
+        middle = midpoint_gradient(G)
+        return rotate(s, middle), symmetric(middle)
+
+
+@ti.func
 def trace(s: ti.template()):
     """Trace of a packed tensor."""
     return s[0] + s[1] + s[2]

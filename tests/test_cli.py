@@ -18,7 +18,7 @@ SHIPPED = sorted(available())
 def command(monkeypatch, capsys, tmp_path):
     """run(*arguments) -> (exit status, stdout, stderr), in an empty folder; a run that starts Taichi fails the test."""
     monkeypatch.chdir(tmp_path)
-    monkeypatch.setattr("rsmpm_ti.run._start_taichi", lambda *_: pytest.fail("Taichi was started"))
+    monkeypatch.setattr("rsmpm_ti.run.start_taichi", lambda *_: pytest.fail("Taichi was started"))
 
     def run(*arguments: str):
         status = main(list(arguments))

@@ -134,7 +134,7 @@ def test_unstable_run_says_where_and_keeps_what_there_is(tmp_path):
 
     positions = scene.particles()
     out = module._prepare(scene, tmp_path)
-    real, gpu = module._start_taichi("f64", "cpu", 1)
+    real, gpu = module.start_taichi("f64", "cpu", 1)
     spoil.run = module._Run(scene, positions, out, "intact", real, gpu, spoil, "f64")
     with pytest.raises(UnstableRun, match=r"not finite or left the domain at step \d+, t = .* mm"):
         spoil.run.go()
@@ -148,3 +148,41 @@ def test_module_runs_as_a_command():
     )
     assert done.returncode == 0
     assert "cube" in done.stdout and "flaw_angle" in done.stdout and "Taichi" not in done.stdout
+
+
+def test_a_flying_fragment_is_sorted_before_it_leaves_its_stripes_reach():
+    """One particle in a hundred moves: too few to be sorted for their share, so they must be for their distance."""
+    from rsmpm_ti.laws import Hooke, Rock, Unbreakable
+    from rsmpm_ti.measure import survey
+    from rsmpm_ti.regions import Box
+    from rsmpm_ti.spec import Body, Domain, Loading, Scene, Schedule
+    from rsmpm_ti.traversal import ROWS
+
+    big = Body(region=Box(lower=(0.0, 0.0), upper=(0.02, 0.02)))
+    small = Body(region=Box(lower=(0.03, 0.01), upper=(0.032, 0.012)), velocity=(200.0, 0.0))
+    scene = Scene(
+        title="fragment",
+        domain=Domain(lower=(0.0, 0.0), upper=(0.05, 0.02), dx=1e-3),
+        bodies=(big, small),
+        rock=Rock(density=2600.0, elasticity=Hooke(E=17e9, nu=0.14), criterion=Unbreakable()),
+        loading=Loading(),
+        schedule=Schedule(t_end=6e-5, rows=20),
+    )
+    farthest = 0
+
+    def look(progress: Progress) -> None:
+        nonlocal farthest
+        sim = look.run.sim
+        row = sim.particles.key.to_numpy() // sim.grid.nodes[1]
+        x = sim.particles.reference.to_numpy()[:, 0] + sim.particles.u.to_numpy()[:, 0]
+        now = np.floor((x - sim.grid.origin[0]) / 1e-3 - sim.shape.shift)
+        farthest = max(farthest, int(np.abs(now - row).max()))
+
+    import rsmpm_ti.run as module
+
+    real, gpu = module.start_taichi("f64", "cpu", 1)
+    look.run = module._Run(scene, scene.particles(), None, "fragment", real, gpu, look, "f64")
+    result = look.run.go()
+    assert result.snapshot.displacement[-1, 0] > 0.01  # it has crossed more than ten cells
+    assert farthest <= 1 < ROWS
+    assert survey(look.run.sim).sick == 0

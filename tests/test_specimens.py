@@ -64,9 +64,7 @@ def test_slit_specimen_has_the_static_modulus_and_first_failure():
     assert np.abs(place - np.array([7.07e-3, 0.53e-3])).max() < 0.5e-3  # one cell
 
 
-@pytest.mark.parametrize(
-    ("dx", "tolerance"), [(1e-3, 0.02), pytest.param(0.5e-3, 0.01, marks=pytest.mark.validation)]
-)
+@pytest.mark.parametrize(("dx", "tolerance"), [(1e-3, 0.02), pytest.param(0.5e-3, 0.01, marks=pytest.mark.validation)])
 def test_intact_disc_has_the_stress_of_hondros_at_its_centre(taichi_f64, dx, tolerance):
     """The platens stop smoothly after 8 wave transits, so the state compared is static to about a part in 10^3.
 

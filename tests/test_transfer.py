@@ -172,14 +172,27 @@ def test_momentum_of_a_free_body_is_conserved_to_round_off(simulations, scene):
     assert np.abs(v - state.v).max() > 1e-2  # and something did happen
 
 
-@every_shape
-def test_apic_keeps_an_affine_velocity_field_exactly(simulations, shape):
+@pytest.mark.parametrize(
+    "beyond",
+    [
+        0.0,
+        # share of a cell by which particles lie outside the wall, as beside a platen that pulls
+        pytest.param(0.05, marks=pytest.mark.xfail(reason="kernels.spread clamps a negative D to 1e-6", strict=True)),
+    ],
+)
+@pytest.mark.parametrize("shape", variants(shapes, "weights"), ids=name_of)
+def test_apic_keeps_an_affine_velocity_field_exactly(simulations, shape, beyond):
     """Also beside a frictionless wall, where this field has no normal velocity."""
+    if beyond and shape.width == 2:
+        pytest.skip("the hat is not folded: beyond a wall it meets another row of nodes")
     scene = walled_scene(shape)
-    sim, wall = shared(simulations, scene), scene.loading.boundaries[0].position
+    sim, boundary = shared(simulations, scene), scene.loading.boundaries[0]
     state, gradient = cloud(scene, sim), np.array([[30.0, -70.0], [0.0, 20.0]])
+    if beyond:
+        outward = -1.0 if boundary.side == "lower" else 1.0
+        state.reference[:20, 1] = boundary.position + outward * beyond * DX
     state.C = np.broadcast_to(gradient, (COUNT, 2, 2))
-    state.v = (2.0, 0.0) + (state.reference - (0.3 * DX, wall)) @ gradient.T
+    state.v = (2.0, 0.0) + (state.reference - (0.3 * DX, boundary.position)) @ gradient.T
     state.sigma = np.zeros_like(state.sigma)
     put(sim, state)
     ORDERS["musl"](sim, 1e-9, 0.0, 1.0)
