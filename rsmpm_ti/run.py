@@ -193,8 +193,8 @@ class _Run:
             remaining -= steps
             self.survey = survey(self.sim)
             guard(self.sim, self.clock, self.survey)
-            # stripes bear a stray of one row; sorted now, none can be two rows away before the next look
-            if self.survey.row_strays or self.survey.strays > STRAY_SHARE * self.sim.particles.count:
+            # stripes bear a stray of one row: half a cell beyond it and SAFE_CELLS more is still less than that
+            if self.survey.far_strays or self.survey.strays > STRAY_SHARE * self.sim.particles.count:
                 sort_particles(self.sim)
         self.history.record(self.survey)
         self._output()

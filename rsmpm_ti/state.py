@@ -160,7 +160,7 @@ SCALARS = (
     "sick",
     "sick_id",
     "strays",
-    "row_strays",
+    "far_strays",
     "work",
     "dissipated",
 )
