@@ -12,7 +12,7 @@ from rsmpm_ti.errors import refuse
 
 
 def _check_plane(owner: str, boundary) -> None:
-    if boundary.axis not in (0, 1, 2):
+    if type(boundary.axis) is not int or boundary.axis not in (0, 1, 2):
         raise refuse(f"{owner}.axis", boundary.axis, "0, 1 or 2")
     if boundary.side not in ("lower", "upper"):
         raise refuse(f"{owner}.side", boundary.side, "'lower' or 'upper'")
@@ -52,8 +52,8 @@ class Platen:
             raise refuse("platen.speed", self.speed, "a finite velocity in m/s")
         if not (math.isfinite(self.friction) and self.friction >= 0.0):
             raise refuse("platen.friction", self.friction, "zero or a positive coefficient")
-        if self.span is not None and not self.span[0] < self.span[1]:
-            raise refuse("platen.span", self.span, "an interval (lower, upper) in metres")
+        if self.span is not None and not (len(self.span) == 2 and -math.inf < self.span[0] < self.span[1] < math.inf):
+            raise refuse("platen.span", self.span, "a finite interval (lower, upper) in metres")
 
     @property
     def limited(self) -> bool:

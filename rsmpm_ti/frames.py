@@ -56,13 +56,15 @@ class Timetable:
 class Gallery:
     """Paints and writes the pictures of one run into `out`."""
 
-    def __init__(self, scene: Scene, name: str, out: Path):
+    def __init__(self, scene: Scene, name: str, out: Path, volume: float):
+        """volume: of all particles [m^dim], from which the end of the load axis is estimated."""
         self._scene, self._name, self._out = scene, name, out
         low, high = zip(*(body.region.bounds() for body in scene.bodies), strict=True)
         lower, upper = np.min(low, axis=0)[:2], np.max(high, axis=0)[:2]
-        strain, load = load_limits(scene)
+        strain, load = load_limits(scene, volume)
         shared = {
-            "lower": tuple(lower), "upper": tuple(upper), "stress_limit": stress_limit(scene), "strain_limit": strain,
+            "lower": tuple(lower), "upper": tuple(upper), "stress_limit": stress_limit(scene, load),
+            "strain_limit": strain,
             "load_limit": load, "backend": scene.output.painter,
         }  # fmt: skip
         self.painters = {kind: FramePainter(kind=kind, **shared) for kind in ("stress", "cracks")}
@@ -114,21 +116,24 @@ class Gallery:
             painter.close()
 
 
-def stress_limit(scene: Scene) -> float:
-    """Colour limit [Pa]: 1.5 times the tensile strength, or for an elastic run a tenth of the load reached."""
+def stress_limit(scene: Scene, load: float | None) -> float:
+    """Colour limit [Pa]: 1.5 times the tensile strength, or for an elastic run a tenth of the load expected."""
     if scene.output.stress_limit is not None:
         return scene.output.stress_limit
     if isinstance(scene.rock.criterion, MohrCoulomb):
         return 1.5 * scene.rock.criterion.tensile_strength
-    return 0.1 * load_limits(scene)[1] if scene.loading.platens else 1e6
+    return 0.1 * load if load else 1e6
 
 
-def load_limits(scene: Scene) -> tuple[float | None, float | None]:
-    """Ends of the inset's axes: the last strain, and the stress an intact specimen would reach there (at most UCS)."""
+def load_limits(scene: Scene, volume: float) -> tuple[float | None, float | None]:
+    """Ends of the inset's axes: the last strain, and the nominal stress of a uniformly strained body of this volume.
+
+    That is an upper bound of the elastic load (Voigt); the uniaxial strength bounds it too.
+    """
     if scene.loading.platens is None or scene.loading.width is None:
         return None, None
     strain = abs(scene.loading.strain_rate * scene.t_end)
-    load = scene.rock.elasticity.plane_strain_modulus * strain
+    load = scene.rock.elasticity.plane_strain_modulus * strain * volume / (scene.loading.height * scene.loading.width)
     if isinstance(scene.rock.criterion, MohrCoulomb):
         load = min(load, 1.05 * scene.rock.criterion.ucs)
     return strain, load

@@ -6,7 +6,7 @@ particles with the same base node keeps its node values in locals, loaded or add
 
 import taichi as ti
 
-from rsmpm_ti.material import update_stress
+from rsmpm_ti.material import check_failure, update_stress
 from rsmpm_ti.shape import fold_at_walls, tensor_gradient, tensor_weight
 from rsmpm_ti.tensors import in_plane_times, isotropic
 
@@ -222,7 +222,8 @@ def velocity_to_particle(sim: ti.template(), p, w, xi, base, v_i: ti.template(),
 def move(sim: ti.template(), p, v_pic, dt, slot):
     """x_p <- x_p + dt v_pic, and the work of the body force."""
     particles, ledger = sim.particles, sim.ledger
-    particles.u[p] += dt * v_pic
+    # not +=, which is an atomic add on a field: a locked exchange that also stops the next particle from starting
+    particles.u[p] = particles.u[p] + dt * v_pic
     if ti.static(sim.heavy):
         # the velocity at the middle of the step: then a free fall's work is its kinetic energy to round-off
         b = ti.Vector(sim.acceleration)
@@ -295,7 +296,6 @@ def g2p_span(sim: ti.template(), start, stop, slot, what: ti.template(), dt, tim
     Gradients come from nodes.w (nodes.v unless musl), positions from nodes.v.
     """
     nodes, grid = sim.nodes, sim.grid
-    viscous = ti.cast(0.0, ti.f64)
     p = start
     xi = coordinates(sim, p)
     while p < stop:
@@ -316,15 +316,22 @@ def g2p_span(sim: ti.template(), start, stop, slot, what: ti.template(), dt, tim
             if ti.static(what[1]):
                 move(sim, p, interpolate(sim, w, v_i), dt, slot)
             if ti.static(what[2]):
-                L = velocity_gradient(sim, w, dw, w_i)
-                viscous += ti.cast(update_stress(sim, p, L, dt, time, slot), ti.f64)
+                sim.particles.L[p] = velocity_gradient(sim, w, dw, w_i)
             p += 1
             running = False
             if p < stop:
                 xi = coordinates(sim, p)
                 running = same_run(sim, xi, base)
-    if ti.static(what[2] and sim.particles.viscous):
-        sim.ledger.viscous[slot] += viscous
+    # loops of their own: the processor then overlaps several short chains of arithmetic instead of one long one
+    if ti.static(what[2]):
+        viscous = ti.cast(0.0, ti.f64)
+        for p_moved in range(start, stop):
+            viscous += ti.cast(update_stress(sim, p_moved, sim.particles.L[p_moved], dt), ti.f64)
+        if ti.static(sim.particles.viscous):
+            sim.ledger.viscous[slot] += viscous
+    if ti.static(what[2] and sim.particles.breaks):
+        for p_check in range(start, stop):
+            check_failure(sim, p_check, time, slot)
 
 
 @ti.kernel

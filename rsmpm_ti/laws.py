@@ -112,7 +112,7 @@ class MohrCoulomb:
 
     @property
     def apex(self) -> float:
-        return self.c_cos_phi / self.sin_phi if self.friction_angle > 0.0 else math.inf
+        return self.c_cos_phi / self.sin_phi if self.sin_phi > 0.0 else math.inf
 
     @property
     def ucs(self) -> float:
@@ -172,8 +172,8 @@ class Clipped:
 
     def __post_init__(self):
         for name in ("tension_limit", "compression_limit"):
-            if not getattr(self, name) >= 0.0:
-                raise refuse(f"after_failure.{name}", getattr(self, name), "zero or more, in Pa")
+            if not 0.0 <= getattr(self, name) < math.inf:
+                raise refuse(f"after_failure.{name}", getattr(self, name), "zero or more and finite, in Pa")
 
     @ti.func
     def pressure(self, bulk, J):
@@ -199,8 +199,8 @@ class BulkViscosity:
 
     def __post_init__(self):
         for name in ("c1", "c2"):
-            if not getattr(self, name) >= 0.0:
-                raise refuse(f"viscosity.{name}", getattr(self, name), "zero or more")
+            if not 0.0 <= getattr(self, name) < math.inf:
+                raise refuse(f"viscosity.{name}", getattr(self, name), "zero or more and finite")
 
     acts = True
 
@@ -231,6 +231,8 @@ class Rock:
 
     def __post_init__(self):
         _positive("rock", density=self.density)
+        if not 0.0 < self.wave_speed() < math.inf:
+            raise refuse("rock.density", self.density, "such that the wave speed is positive and finite")
 
     def wave_speed(self, time_scale: float = 1.0) -> float:
         """P-wave speed c_p = sqrt((lambda + 2 mu)/rho) [m/s], with the density scaled by time_scale^2."""

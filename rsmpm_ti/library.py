@@ -2,15 +2,18 @@
 
 import dataclasses
 import difflib
+import functools
 import importlib.util
 import inspect
+import operator
 import sys
 import traceback
+import typing
 from dataclasses import replace
 from pathlib import Path
 
 from rsmpm_ti.errors import SceneError
-from rsmpm_ti.record import KNOWN, read_scene
+from rsmpm_ti.record import KNOWN, entry_kinds, fits, members, phrase, read_scene
 from rsmpm_ti.spec import Scene
 
 SHIPPED = Path(__file__).parent / "scenes"
@@ -46,25 +49,27 @@ def find(name: str) -> Path:
 
 def load_scene(name: str, *, quick: bool = False, settings: dict[str, str] | None = None, **overrides) -> Scene:
     """Build a scene. `overrides` are keywords of its function; `settings` are texts as --set gives them, where a
-    dotted name reaches a field of the built Scene. `quick` first takes the file's QUICK keywords.
+    dotted name reaches a field of the built Scene, and so does a field's own name that is no keyword. `quick` first
+    takes the file's QUICK keywords.
 
     A .py scene is a program and is run; a .json scene is data and is not. Raises SceneError.
     """
     path, settings = find(name), dict(settings or {})
-    dotted = {k: settings.pop(k) for k in list(settings) if "." in k}
-    if path.suffix == ".json":
+    recorded = path.suffix == ".json"
+    function, parameters, quick_keywords = (None, {}, {}) if recorded else _function(path)
+    fields = {
+        key: settings.pop(key)
+        for key in list(settings)
+        if "." in key or (key in typing.get_type_hints(Scene) and key not in parameters)
+    }
+    if recorded:
         if settings or overrides or quick:
             raise SceneError("a recorded scene has no keywords; use dotted names, for example schedule.cfl=0.3")
         scene = read_scene(path)
     else:
-        module = _load(path)
-        function = getattr(module, "scene", None)
-        if not callable(function):
-            raise SceneError(f"{path} defines no function scene(); it must return a Scene")
-        keywords = dict(getattr(module, "QUICK", {})) if quick else {}
-        scene = _call(function, path, keywords | overrides, settings)
-    for key, text in dotted.items():
-        scene = _with_field(scene, key, key.split("."), text)
+        scene = _call(function, path, (quick_keywords if quick else {}) | overrides, settings)
+    for key, text in fields.items():
+        scene = _with_field(scene, Scene, key, key.split("."), text)
     return scene
 
 
@@ -75,7 +80,7 @@ def _load(path: Path):
         spec.loader.exec_module(module)
     except SceneError:
         raise
-    except Exception as error:
+    except (Exception, SystemExit) as error:
         line = next(
             (
                 f.lineno
@@ -89,12 +94,23 @@ def _load(path: Path):
     return module
 
 
+def _function(path: Path):
+    """The function scene() of a file, its parameters, and the file's QUICK keywords."""
+    module = _load(path)
+    try:
+        parameters = inspect.signature(module.scene).parameters
+    except (AttributeError, TypeError, ValueError):
+        raise SceneError(f"{path} defines no function scene(); it must return a Scene") from None
+    quick = getattr(module, "QUICK", {})
+    if not isinstance(quick, dict):
+        raise SceneError(f"{path}: QUICK must be a dict of keywords of scene(), not a {type(quick).__name__}")
+    return module.scene, parameters, quick
+
+
 def keywords_of(path: Path) -> dict[str, object]:
-    """Keyword -> default of a scene file's function."""
-    function = getattr(_load(path), "scene", None)
-    if not callable(function):
-        raise SceneError(f"{path} defines no function scene(); it must return a Scene")
-    return {k: p.default for k, p in inspect.signature(function).parameters.items()}
+    """Keyword -> default of a scene file's function. Raises SceneError for a file without one."""
+    _, parameters, _ = _function(path)
+    return {k: p.default for k, p in parameters.items()}
 
 
 def _call(function, path: Path, overrides: dict, settings: dict[str, str]) -> Scene:
@@ -102,9 +118,12 @@ def _call(function, path: Path, overrides: dict, settings: dict[str, str]) -> Sc
     values = dict(overrides)
     for key in (*overrides, *settings):
         if key not in parameters:
-            raise SceneError(_unknown(key, list(parameters), f"scene {path.stem}"))
+            fields = "; fields of the built scene are set by dotted names (schedule.cfl=0.3) or as order=usf"
+            raise SceneError(
+                _unknown(key, list(parameters), f"scene {path.stem}", fields, typing.get_type_hints(Scene))
+            )
     for key, text in settings.items():
-        values[key] = _parse(key, text, parameters[key].default)
+        values[key] = _parse(key, text, _kind_of(parameters[key].default))
     try:
         scene = function(**values)
     except SceneError:
@@ -116,66 +135,76 @@ def _call(function, path: Path, overrides: dict, settings: dict[str, str]) -> Sc
     return scene
 
 
-def _unknown(key: str, names: list[str], owner: str) -> str:
-    close = difflib.get_close_matches(key, names, n=1)
+def _unknown(key: str, names: list[str], owner: str, more: str = "", also=()) -> str:
+    close = difflib.get_close_matches(key, [*names, *also], n=1)
     hint = f"; did you mean {close[0]}?" if close else ""
-    return f"{owner} has no setting {key!r}; it has: {', '.join(names)}{hint}"
+    return f"{owner} has no setting {key!r}; it has: {', '.join(names)}{more}{hint}"
 
 
-def _parse(key: str, text: str, default: object):
-    """A text as the type of the value that it replaces."""
-    kind = type(default)
-    if kind is bool:
-        if text.lower() in ("true", "false"):
-            return text.lower() == "true"
-        raise SceneError(f"{key}={text} is refused: it must be true or false")
-    if kind in (int, float) or default is None:
-        try:
-            return int(text) if kind is int else float(text)
-        except ValueError:
-            raise SceneError(
-                f"{key}={text} is refused: it must be a{'n integer' if kind is int else ' number'}"
-            ) from None
-    if kind is str:
-        return text
-    if kind is tuple:
-        try:
-            return tuple(float(part) for part in text.strip("()").split(",") if part.strip())
-        except ValueError:
-            raise SceneError(f"{key}={text} is refused: it must be numbers separated by commas") from None
+def _kind_of(default: object):
+    """What a keyword takes, as an annotation, from its default: a class may be any of its kind."""
+    if default is None or default is inspect.Parameter.empty:
+        return float | None
+    if isinstance(default, tuple):
+        return tuple[float, ...]
     if dataclasses.is_dataclass(default):
-        chosen = KNOWN.get(text)
-        if chosen is None:
-            names = sorted(n for n, c in KNOWN.items() if c.__module__ == kind.__module__)
-            raise SceneError(f"{key}={text} is refused: it must name a class, one of: {', '.join(names)}")
+        kin = [c for c in KNOWN.values() if c.__module__ == type(default).__module__]
+        return functools.reduce(operator.or_, kin, type(default))
+    return type(default)
+
+
+def _readings(text: str):
+    """What a text may mean, the narrowest first."""
+    if text.lower() in ("none", "true", "false"):
+        yield {"none": None, "true": True, "false": False}[text.lower()]
+    numbers = (float, int, lambda t: tuple(float(part) for part in t.strip("()").split(",") if part.strip()))
+    for read in numbers:
         try:
-            return chosen()
+            yield read(text)
+        except ValueError:
+            pass
+    yield text
+
+
+def _parse(key: str, text: str, wanted):
+    """A text as what an annotation says: a number, a word, numbers separated by commas, or the name of a class."""
+    classes = {kind.__name__: kind for kind in members(wanted) if dataclasses.is_dataclass(kind)}
+    if text in classes:
+        try:
+            return classes[text]()
         except TypeError as error:
             raise SceneError(
                 f"{key}={text} is refused: it needs parameters ({error}); build it in a scene file"
             ) from None
-    raise SceneError(f"{key} cannot be set from the command line (it is a {kind.__name__})")
+    for value in _readings(text):
+        if fits(value, wanted):
+            return value
+    raise SceneError(f"{key}={text} is refused: it must be {phrase(wanted)}")
 
 
-def _with_field(owner, key: str, path: list[str], text: str):
-    """A copy of a frozen dataclass with one nested field replaced; bodies.0.seeding indexes a tuple."""
+def _with_field(owner, kind, key: str, path: list[str], text: str):
+    """A copy of frozen data with one nested value replaced; `kind` is the annotation of `owner`, bodies.0.seeding
+    indexes a tuple."""
+    if not path:
+        return _parse(key, text, kind)
     name, rest = path[0], path[1:]
     if isinstance(owner, tuple):
-        if not (name.isdigit() and int(name) < len(owner)):
+        if name not in map(str, range(len(owner))):
             raise SceneError(f"{key}: {name!r} is no index; there are {len(owner)} entries, counted from 0")
         k = int(name)
-        return (
-            *owner[:k],
-            _with_field(owner[k], key, rest, text) if rest else _parse(key, text, owner[k]),
-            *owner[k + 1 :],
-        )
+        return (*owner[:k], _with_field(owner[k], entry_kinds(kind, len(owner))[k], key, rest, text), *owner[k + 1 :])
     if not dataclasses.is_dataclass(owner):
         raise SceneError(f"{key}: {name!r} is no field of a {type(owner).__name__}")
     names = [f.name for f in dataclasses.fields(owner)]
     if name not in names:
         raise SceneError(_unknown(name, names, type(owner).__name__))
-    old = getattr(owner, name)
-    return replace(owner, **{name: _with_field(old, key, rest, text) if rest else _parse(key, text, old)})
+    value = _with_field(getattr(owner, name), typing.get_type_hints(type(owner))[name], key, rest, text)
+    try:
+        return replace(owner, **{name: value})
+    except SceneError:
+        raise
+    except (TypeError, ValueError, AttributeError, ArithmeticError) as error:
+        raise SceneError(f"{key}={text} is refused: {type(owner).__name__} cannot be built: {error}") from None
 
 
 def scene_name(name: str) -> str:

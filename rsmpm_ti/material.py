@@ -20,41 +20,46 @@ def record_failure(sim: ti.template(), p, mode, extremes, released, time):
 
 
 @ti.func
-def update_stress(sim: ti.template(), p, L, dt, time, slot):
-    """Elastic step, then the failure check of the paper: every particle, every step, tension first.
+def update_stress(sim: ti.template(), p, L, dt):
+    """Elastic stress and J after one step; returns the energy that artificial viscosity took [J].
 
-    A failed particle keeps s = 0 and a pressure from total J; it has no artificial viscosity (paper sec. 3.2).
-    Returns the energy that viscosity took [J].
+    Done for failed particles too, which `check_failure` sets right: a step without branches runs faster.
     """
-    particles, ledger, rock = sim.particles, sim.ledger, sim.rock
-    bulk = ti.static(rock.elasticity.bulk)
+    particles, rock = sim.particles, sim.rock
     J = particles.J[p] * (ti.Matrix.identity(float, sim.dim) + dt * L).determinant()
     particles.J[p] = J
-    failed = False
-    if ti.static(particles.breaks):
-        failed = particles.mode[p] != 0
-    q, lost = 0.0, 0.0
-    if not failed:
-        sigma = rock.elasticity.stress(particles.sigma[p], dt * L)
-        if ti.static(particles.breaks):
-            extremes = extreme_principals(sigma)
-            mode = rock.criterion.mode(extremes[0], extremes[1])
-            if mode != 0:
-                failed = True
-                particles.mode[p] = mode
-                kept = pressure_energy(rock.after_failure.pressure(bulk, J), bulk, J)
-                released = particles.volume[p] * (J * rock.elasticity.energy(sigma) - kept)
-                ledger.released[slot] += ti.cast(released, ti.f64)
-                record_failure(sim, p, mode, extremes, released, time)
-        if ti.static(particles.viscous):
-            if not failed:
-                q = rock.viscosity.pressure(L.trace(), sim.density, sim.grid.dx, sim.wave_speed)
-                lost = -dt * q * L.trace() * particles.volume[p] * J
-        particles.sigma[p] = sigma
-    if ti.static(particles.breaks):
-        if failed:
-            pressure = rock.after_failure.pressure(bulk, J)
-            particles.sigma[p] = isotropic(-pressure, particles.sigma.n)
+    particles.sigma[p] = rock.elasticity.stress(particles.sigma[p], dt * L)
+    lost = 0.0
     if ti.static(particles.viscous):
+        rate = L.trace()
+        q = rock.viscosity.pressure(rate, sim.density / J, sim.grid.dx, sim.wave_speed)
+        if ti.static(particles.breaks):
+            q = ti.select(particles.mode[p] == 0, q, 0.0)  # none in failed rock (paper sec. 3.2)
         particles.q[p] = q
+        lost = -dt * q * rate * particles.volume[p] * J
     return lost
+
+
+@ti.func
+def check_failure(sim: ti.template(), p, time, slot):
+    """The failure check of the paper: tension first, then Mohr-Coulomb; irreversible.
+
+    A failed particle keeps s = 0 and a pressure from total J.
+    """
+    particles, rock = sim.particles, sim.rock
+    bulk = ti.static(rock.elasticity.bulk)
+    sigma, mode = particles.sigma[p], particles.mode[p]
+    if mode == 0:
+        extremes = extreme_principals(sigma)
+        mode = rock.criterion.mode(extremes[0], extremes[1])
+        if mode != 0:
+            J = particles.J[p]
+            particles.mode[p] = mode
+            if ti.static(particles.viscous):
+                particles.q[p] = 0.0
+            kept = pressure_energy(rock.after_failure.pressure(bulk, J), bulk, J)
+            released = particles.volume[p] * (J * rock.elasticity.energy(sigma) - kept)
+            sim.ledger.released[slot] += ti.cast(released, ti.f64)
+            record_failure(sim, p, mode, extremes, released, time)
+    if mode != 0:
+        particles.sigma[p] = isotropic(-rock.after_failure.pressure(bulk, particles.J[p]), sigma.n)

@@ -11,10 +11,24 @@ import numpy as np
 
 from rsmpm_ti.errors import refuse
 
+FARTHEST = 1e9
+"""Largest coordinate and length [m]: beyond it a specimen is a mistake, and squares and node numbers overflow."""
+
+
+def check_coordinates(name: str, values: tuple[float, ...]) -> None:
+    """Refuse what is no place in 2D or 3D."""
+    if len(values) not in (2, 3) or not all(abs(x) <= FARTHEST for x in values):
+        raise refuse(name, values, f"2 or 3 finite coordinates in metres, of size at most {FARTHEST:g}")
+
 
 def _positive(name: str, value: float) -> None:
-    if not (math.isfinite(value) and value > 0.0):
-        raise refuse(name, value, "a positive finite length in metres")
+    if not 0.0 < value <= FARTHEST:
+        raise refuse(name, value, f"a positive finite length in metres, at most {FARTHEST:g}")
+
+
+def _dimensions(parts: tuple) -> set[int]:
+    """The dimensions of regions; a slit, which goes through the thickness in 3D, has none of its own."""
+    return {len(part.bounds()[0]) for part in parts if not isinstance(part, Slit)}
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -25,6 +39,8 @@ class Box:
     upper: tuple[float, ...]
 
     def __post_init__(self):
+        check_coordinates("box.lower", self.lower)
+        check_coordinates("box.upper", self.upper)
         if len(self.lower) != len(self.upper) or not all(a < b for a, b in zip(self.lower, self.upper, strict=False)):
             raise refuse("box.upper", self.upper, f"above box.lower = {self.lower} on every axis")
 
@@ -44,6 +60,7 @@ class Disc:
     radius: float
 
     def __post_init__(self):
+        check_coordinates("disc.centre", self.centre)
         _positive("disc.radius", self.radius)
 
     def contains(self, x: np.ndarray) -> np.ndarray:
@@ -63,6 +80,7 @@ class Slit:
     angle: float
 
     def __post_init__(self):
+        check_coordinates("slit.centre", self.centre)
         _positive("slit.length", self.length)
         _positive("slit.width", self.width)
         if not math.isfinite(self.angle):
@@ -95,7 +113,11 @@ class Slit:
 class Union:
     """What lies in any of the parts."""
 
-    parts: tuple
+    parts: "tuple[Region, ...]"
+
+    def __post_init__(self):
+        if not self.parts or len(_dimensions(self.parts)) > 1:
+            raise refuse("union.parts", self.parts, "at least one region, and all of one dimension")
 
     def contains(self, x: np.ndarray) -> np.ndarray:
         return np.any([part.contains(x) for part in self.parts], axis=0)
@@ -109,8 +131,12 @@ class Union:
 class Difference:
     """What lies in `whole` and in none of `removed`."""
 
-    whole: Box | Disc | Union
-    removed: tuple
+    whole: "Region"
+    removed: "tuple[Region, ...]"
+
+    def __post_init__(self):
+        if len(_dimensions((self.whole, *self.removed))) > 1:
+            raise refuse("difference.removed", self.removed, "regions of the dimension of difference.whole")
 
     def contains(self, x: np.ndarray) -> np.ndarray:
         inside = self.whole.contains(x)
@@ -120,6 +146,10 @@ class Difference:
 
     def bounds(self) -> tuple[np.ndarray, np.ndarray]:
         return self.whole.bounds()
+
+
+Region = Box | Disc | Slit | Union | Difference
+"""What a recorded scene or the command line may give as a region; a scene file may bring its own."""
 
 
 def slits_of(region) -> tuple[Slit, ...]:

@@ -141,7 +141,11 @@ class _Run:
 
             self._write_record()
             self.timetable = Timetable(scene, self.sim.particles.count)
-            self.gallery = Gallery(scene, name, out)
+            volume = sum(
+                len(x) * (scene.domain.dx / body.seeding.particles_per_axis) ** scene.dim
+                for x, body in zip(positions, scene.bodies, strict=True)
+            )
+            self.gallery = Gallery(scene, name, out, volume)
 
     def go(self) -> Result:
         old = None

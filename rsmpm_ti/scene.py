@@ -85,8 +85,12 @@ def describe(scene: Scene) -> str:
 def list_scenes() -> str:
     lines = []
     for name, path in available().items():
-        keywords = ", ".join(f"{k}={v:g}" if isinstance(v, float) else f"{k}={v}" for k, v in keywords_of(path).items())
-        lines.append(f"{name:<10} {keywords}")
+        try:
+            pairs = keywords_of(path).items()
+            text = ", ".join(f"{k}={v:g}" if isinstance(v, float) else f"{k}={v}" for k, v in pairs)
+        except SceneError as error:  # one bad file does not hide the others
+            text = "cannot be listed: " + " ".join(str(error).split())
+        lines.append(f"{name:<10} {text}")
     return "\n".join(lines)
 
 

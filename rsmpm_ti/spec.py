@@ -11,7 +11,7 @@ import numpy as np
 from rsmpm_ti.boundaries import Fixed, Platen, Wall
 from rsmpm_ti.errors import SceneError, refuse
 from rsmpm_ti.laws import Rock, Unbreakable
-from rsmpm_ti.regions import slits_of
+from rsmpm_ti.regions import Region, check_coordinates, slits_of
 from rsmpm_ti.seeding import Jittered, Lattice, check_slit
 from rsmpm_ti.shape import Gimp, Linear, QuadraticBSpline
 from rsmpm_ti.transfer import Apic, PicFlip
@@ -21,6 +21,9 @@ PAPER_DT = 1.91e-5
 
 USL_CFL = 0.6
 """Smallest stability limit of usl over offsets and shape functions other than linear, in units of dx/c_p."""
+
+MOST = 2_000_000_000
+"""Most particles, grid nodes and steps: 32-bit numbers count them, and no machine here would hold or finish more."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -37,13 +40,16 @@ class Domain:
             raise refuse("domain.dx", self.dx, "a positive cell size in metres")
         if len(self.lower) not in (2, 3) or len(self.lower) != len(self.upper):
             raise refuse("domain.upper", self.upper, "2 or 3 coordinates, as many as domain.lower")
-        if not all(
-            math.isfinite(a) and math.isfinite(b) and b - a >= self.dx
-            for a, b in zip(self.lower, self.upper, strict=True)
-        ):
+        check_coordinates("domain.lower", self.lower)
+        check_coordinates("domain.upper", self.upper)
+        edges = [float(b) - float(a) for a, b in zip(self.lower, self.upper, strict=True)]
+        if not all(edge >= self.dx for edge in edges):
             raise refuse("domain.upper", self.upper, f"at least one cell above domain.lower = {self.lower}")
         if self.grid not in ("dense", "sparse", "auto"):
             raise refuse("domain.grid", self.grid, "'dense', 'sparse' or 'auto'")
+        nodes = math.prod(edge / float(self.dx) + 1.0 for edge in edges)
+        if nodes > MOST:
+            raise refuse("domain.dx", self.dx, f"such that the grid has at most {MOST:.3g} nodes, not {nodes:.3g}")
 
     @property
     def dim(self) -> int:
@@ -54,10 +60,16 @@ class Domain:
 class Body:
     """Material that fills a region. Initial velocity [m/s] and, in the x-y plane, spin [rad/s] about its centre."""
 
-    region: object
+    region: Region
     seeding: Lattice | Jittered = Lattice()
     velocity: tuple[float, ...] | None = None
     spin: float = 0.0
+
+    def __post_init__(self):
+        if self.velocity is not None and not all(map(math.isfinite, self.velocity)):
+            raise refuse("body.velocity", self.velocity, "finite components in m/s")
+        if not math.isfinite(self.spin):
+            raise refuse("body.spin", self.spin, "a finite rate in rad/s")
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -99,6 +111,8 @@ class Loading:
     def __post_init__(self):
         if not (math.isfinite(self.time_scale) and 1.0 <= self.time_scale <= 1000.0):
             raise refuse("loading.time_scale", self.time_scale, "in [1, 1000]", "1 is the true density")
+        if self.body_force is not None and not all(map(math.isfinite, self.body_force)):
+            raise refuse("loading.body_force", self.body_force, "finite components in m/s^2")
         if self.width is not None and not (math.isfinite(self.width) and self.width > 0.0):
             raise refuse("loading.width", self.width, "a positive length in metres")
 
@@ -149,7 +163,7 @@ class Schedule:
             raise refuse("schedule.strain_end", self.strain_end, "a strain of size in (0, 0.5)")
         if not (math.isfinite(self.cfl) and self.cfl > 0.0):
             raise refuse("schedule.cfl", self.cfl, "positive")
-        if not (isinstance(self.rows, int) and 1 <= self.rows <= 1_000_000):
+        if not (type(self.rows) is int and 1 <= self.rows <= 1_000_000):
             raise refuse("schedule.rows", self.rows, "a whole number from 1 to 1 000 000")
 
 
@@ -169,7 +183,7 @@ class Output:
     def __post_init__(self):
         for name in ("frames", "vtu"):
             value = getattr(self, name)
-            if not (isinstance(value, int) and 0 <= value <= 10_000):
+            if not (type(value) is int and 0 <= value <= 10_000):
                 raise refuse(f"output.{name}", value, "a whole number from 0 to 10 000")
         if self.painter not in ("raster", "ggui"):
             raise refuse("output.painter", self.painter, "'raster' or 'ggui'")
@@ -208,7 +222,7 @@ class Scene:
 
     def _check_bodies(self) -> None:
         lower, upper = np.array(self.domain.lower), np.array(self.domain.upper)
-        per_axis = {body.seeding.particles_per_axis for body in self.bodies}
+        count = 0.0
         for k, body in enumerate(self.bodies):
             low, high = body.region.bounds()
             if len(low) != self.dim:
@@ -219,17 +233,18 @@ class Scene:
                     f"bodies[{k}].region from {low.tolist()} to {high.tolist()} m lies outside the domain from "
                     f"{list(self.domain.lower)} to {list(self.domain.upper)} m; enlarge the domain or move the body"
                 )
+            count += math.prod((high - low) / self.domain.dx * body.seeding.particles_per_axis)
             if body.velocity is not None and len(body.velocity) != self.dim:
                 raise refuse(f"bodies[{k}].velocity", body.velocity, f"{self.dim} components in m/s")
             if isinstance(self.shape, Gimp) and not math.isclose(
                 self.shape.half_width, 0.5 / body.seeding.particles_per_axis
             ):
-                raise refuse(
-                    "shape.half_width",
-                    self.shape.half_width,
-                    f"{0.5 / max(per_axis)} for this seeding",
-                    "particle domains would overlap or leave gaps",
-                )
+                fitting = f"{0.5 / body.seeding.particles_per_axis} for this seeding"
+                remedy = "particle domains would overlap or leave gaps"
+                raise refuse("shape.half_width", self.shape.half_width, fitting, remedy)
+        if count > MOST:
+            most = f"such that bodies have at most {MOST:.3g} particles, not {count:.3g}"
+            raise refuse("domain.dx", self.domain.dx, most)
 
     def _check_loading(self) -> None:
         loading, domain = self.loading, self.domain
@@ -240,36 +255,33 @@ class Scene:
                 raise refuse(f"boundaries[{k}].axis", boundary.axis, f"below the dimension {self.dim}")
             cells = (boundary.position - domain.lower[boundary.axis]) / domain.dx
             if abs(cells - round(cells)) > 1e-3:
-                raise refuse(
-                    f"boundaries[{k}].position",
-                    boundary.position,
-                    "on a plane of grid nodes",
-                    f"the nearest is {domain.lower[boundary.axis] + round(cells) * domain.dx:.9g} m",
-                )
+                nearest = f"the nearest is {domain.lower[boundary.axis] + round(cells) * domain.dx:.9g} m"
+                raise refuse(f"boundaries[{k}].position", boundary.position, "on a plane of grid nodes", nearest)
         if self.schedule.strain_end is not None or isinstance(loading.start, Affine):
             if loading.platens is None:
                 raise SceneError("strain_end and the Affine start need two platens that face each other; give t_end")
             if loading.width is None:
                 raise SceneError("loading.width is missing: platen forces need a loaded width to become stress")
+        if loading.platens and not loading.height > 0.0:
+            upper = loading.boundaries.index(loading.platens[1])
+            raise refuse(f"boundaries[{upper}].position", loading.platens[1].position, "above the lower platen's")
         if self.schedule.strain_end is not None and not loading.strain_rate * self.schedule.strain_end > 0.0:
-            raise refuse(
-                "schedule.strain_end",
-                self.schedule.strain_end,
-                f"of the sign of the platens' strain rate {loading.strain_rate:.6g} 1/s",
-            )
+            sign = f"of the sign of the platens' strain rate {loading.strain_rate:.6g} 1/s"
+            raise refuse("schedule.strain_end", self.schedule.strain_end, sign)
         if isinstance(loading.start, Ramp) and loading.platens:
             transits = loading.start.time * self.wave_speed / loading.height
             if transits < 5.0:
-                raise refuse(
-                    "start.time",
-                    loading.start.time,
-                    f"at least {5.0 * loading.height / self.wave_speed:.4g} s, 5 wave transits",
-                )
+                least = f"at least {5.0 * loading.height / self.wave_speed:.4g} s, 5 wave transits"
+                raise refuse("start.time", loading.start.time, least)
 
     def _check_step(self) -> None:
         limit = (USL_CFL if self.order == "usl" else self.shape.stable_cfl) * self.domain.dx / self.wave_speed
         transit = self.domain.dx / self.wave_speed
-        if self.dt <= limit:
+        if 0.0 < self.dt <= limit:
+            name = "t_end" if self.schedule.strain_end is None else "strain_end"
+            if not self.t_end / self.dt <= MOST:
+                most = f"at most {MOST:.3g} steps of {self.dt:.4g} s, not {self.t_end / self.dt:.3g}"
+                raise refuse(f"schedule.{name}", getattr(self.schedule, name), most)
             return
         if self.schedule.dt is not None and math.isclose(self.schedule.dt, PAPER_DT, rel_tol=0.01):
             raise SceneError(
@@ -282,7 +294,7 @@ class Scene:
         raise refuse(
             given,
             self.schedule.dt if self.schedule.dt is not None else self.schedule.cfl,
-            f"such that dt = {self.dt:.4g} s is at most {limit:.4g} s (dx/c_p = {transit:.4g} s)",
+            f"such that dt = {self.dt:.4g} s is positive and at most {limit:.4g} s (dx/c_p = {transit:.4g} s)",
             f"use cfl <= {limit / transit:.2f}",
         )
 

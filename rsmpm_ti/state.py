@@ -98,6 +98,7 @@ class Particles:
 
         self.reference, self.u, self.v = vector(dim), vector(dim), vector(dim)
         self.sigma = vector(PACKED_LENGTH[dim])
+        self.L = ti.Matrix.field(dim, dim, real, count, layout=ti.Layout.SOA)  # within a step only: grad v [1/s]
         self.J, self.volume = ti.field(real, count), ti.field(real, count)  # volume: initial [m^dim]
         self.id = ti.field(ti.i32, count)
         self.affine, self.viscous = scene.transfer.affine, scene.rock.viscosity.acts

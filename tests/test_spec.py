@@ -12,10 +12,10 @@ from exact import p_wave_speed
 
 from rsmpm_ti.boundaries import Fixed, Platen, Wall
 from rsmpm_ti.errors import SceneError
-from rsmpm_ti.laws import Hooke, MohrCoulomb, Rock, Unbreakable
+from rsmpm_ti.laws import BulkViscosity, Clipped, Hooke, MohrCoulomb, Rock, Unbreakable
 from rsmpm_ti.library import available, load_scene
 from rsmpm_ti.record import KNOWN, from_plain, read_scene, to_plain
-from rsmpm_ti.regions import Box, Difference, Disc, Slit
+from rsmpm_ti.regions import Box, Difference, Disc, Slit, Union
 from rsmpm_ti.seeding import Lattice
 from rsmpm_ti.shape import Gimp, Linear, QuadraticBSpline
 from rsmpm_ti.spec import Affine, AtRest, Body, Domain, Loading, Output, Ramp, Scene, Schedule
@@ -24,12 +24,12 @@ from rsmpm_ti.transfer import Apic, PicFlip
 NAN, INF = float("nan"), float("inf")
 SPEED = p_wave_speed(17e9, 0.14, 2600.0)
 DX = 0.5e-3
+BLOCK = Box(lower=(0.0, 0.0), upper=(0.05, 0.1))
 SHIPPED = sorted(available())
 
 
 def make(**changes) -> Scene:
     """Example 1 of the paper without its flaw, true density; `changes` by field, or by domain_, loading_ ... field."""
-    block = Box(lower=(0.0, 0.0), upper=(0.05, 0.1))
     platens = (
         Platen(axis=1, side="lower", position=0.0, speed=2.5e-3),
         Platen(axis=1, side="upper", position=0.1, speed=-2.5e-3),
@@ -37,7 +37,7 @@ def make(**changes) -> Scene:
     fields = {
         "title": "block",
         "domain": {"lower": (-0.005, 0.0), "upper": (0.055, 0.1), "dx": DX},
-        "bodies": (Body(region=block, seeding=Lattice()),),
+        "bodies": (Body(region=BLOCK, seeding=Lattice()),),
         "rock": Rock(density=2600.0, elasticity=Hooke(E=17e9, nu=0.14), criterion=Unbreakable()),
         "loading": {"boundaries": platens, "start": Affine(), "width": 0.05},
         "schedule": {"strain_end": 1e-3},
@@ -81,6 +81,31 @@ BY_FIELD = [
     *[("loading.time_scale", lambda v=v: make(loading_time_scale=v)) for v in (0.5, 0.0, -1.0, 1e4, NAN)],
     *[("loading.width", lambda v=v: make(loading_width=v)) for v in (0.0, -1.0, NAN)],
     ("loading.body_force", lambda: make(loading_body_force=(0.0, 0.0, -9.81))),
+    *[("loading.body_force", lambda v=v: Loading(body_force=(0.0, v))) for v in (NAN, INF)],
+    *[("body.velocity", lambda v=v: body(velocity=(v, 0.0))) for v in (NAN, -INF)],
+    *[("body.spin", lambda v=v: body(spin=v)) for v in (NAN, INF)],
+    *[(f"viscosity.{k}", lambda k=k, v=v: BulkViscosity(**{k: v})) for k in ("c1", "c2") for v in (NAN, INF, -1.0)],
+    *[
+        (f"after_failure.{k}", lambda k=k, v=v: Clipped(**{"tension_limit": 1.0, "compression_limit": 1.0, k: v}))
+        for k in ("tension_limit", "compression_limit")
+        for v in (NAN, INF)
+    ],
+    *[("box.lower", lambda v=v: Box(lower=(v, 0.0), upper=(1.0, 1.0))) for v in (NAN, -INF, -1e10)],
+    *[("box.upper", lambda v=v: Box(lower=(0.0, 0.0), upper=(v, 1.0))) for v in (NAN, INF, 0.0)],
+    *[("disc.centre", lambda v=v: Disc(centre=v, radius=1.0)) for v in ((NAN, 0.0), (0.0, INF), (0.0,), ())],
+    *[("disc.radius", lambda v=v: Disc(centre=(0.0, 0.0), radius=v)) for v in (NAN, INF, 1e300)],
+    *[("slit.centre", lambda v=v: Slit(centre=(v, 0.0), length=1.0, width=0.1, angle=0.0)) for v in (NAN, INF)],
+    ("union.parts", lambda: Union(parts=())),
+    ("union.parts", lambda: Union(parts=(Disc(centre=(0.0,) * 2, radius=1.0), Disc(centre=(0.0,) * 3, radius=1.0)))),
+    ("difference.removed", lambda: Difference(whole=BLOCK, removed=(Disc(centre=(0.0,) * 3, radius=1.0),))),
+    ("domain.dx", lambda: make(domain_dx=1e-9)),
+    ("domain.dx", lambda: make(domain_lower=(-1e8, 0.0))),
+    *[("domain.lower", lambda v=v: make(domain_lower=(v, 0.0))) for v in (NAN, -INF, -1e10)],
+    ("domain.dx", lambda: make(domain_dx=2e-6, bodies=body(seeding=Lattice(particles_per_axis=8)))),
+    ("schedule.strain_end", lambda: make(schedule_strain_end=5e-324)),
+    ("schedule.t_end", lambda: make(schedule={"t_end": 1e300})),
+    ("schedule.cfl", lambda: make(schedule_cfl=5e-324)),
+    ("rock.density", lambda: replace(make().rock, density=5e-324)),
     *[("schedule.strain_end", lambda v=v: make(schedule_strain_end=v)) for v in (0.0, 0.5, -0.7, NAN)],
     ("schedule.strain_end", lambda: make(schedule_strain_end=-1e-3)),  # the platens compress
     ("schedule.strain_end", lambda: make(loading_boundaries=platens(speed=2.5e-3))),  # both move alike: no straining
@@ -91,7 +116,7 @@ BY_FIELD = [
     ("schedule.cfl", lambda: make(shape=Gimp(), schedule_cfl=1.71)),
     ("schedule.cfl", lambda: make(shape=Gimp(), order="usl", schedule_cfl=0.61)),
     ("schedule.dt", lambda: make(schedule_dt=1.4 * DX / SPEED)),
-    *[("schedule.rows", lambda v=v: make(schedule_rows=v)) for v in (0, -1, 1.5, 10**7)],
+    *[("schedule.rows", lambda v=v: make(schedule_rows=v)) for v in (0, -1, 1.5, 10**7, True)],
     *[("start.time", lambda v=v: Ramp(time=v)) for v in (0.0, -1e-3, NAN)],
     ("start.time", lambda: make(loading_start=Ramp(time=4.9 * 0.1 / SPEED))),
     ("scene.order", lambda: make(order="leapfrog")),
@@ -108,7 +133,9 @@ BY_FIELD = [
     ("platen.position", lambda: platens(position=NAN)),
     ("platen.speed", lambda: platens(speed=INF)),
     ("platen.friction", lambda: platens(friction=-0.1)),
-    ("platen.span", lambda: platens(span=(0.03, 0.02))),
+    *[("platen.span", lambda v=v: platens(span=v)) for v in ((0.03, 0.02), (0.0, INF), (NAN, 1.0), (0.1,))],
+    ("platen.axis", lambda: platens(axis=True)),
+    ("boundaries[1].position", lambda: make(loading_boundaries=platens(position=0.0))),  # no height is left
     ("wall.axis", lambda: Wall(axis=-1, side="lower", position=0.0)),
     ("fixed.side", lambda: Fixed(axis=0, side="left", position=0.0)),
     *[("output.frames", lambda v=v: Output(frames=v)) for v in (-1, 1.5, 10_001)],
@@ -258,12 +285,51 @@ def test_unknown_missing_and_wrong_fields_are_refused_by_place():
     refusal(lambda: from_plain({**plain, "shape": "Linear"}))
 
 
+@pytest.mark.parametrize(
+    "place, value, words",
+    [
+        ("order", 3, "a text"),
+        ("title", None, "a text"),
+        ("shape", {"type": "Apic"}, "Linear, Gimp or QuadraticBSpline"),
+        ("domain.dx", True, "a number"),
+        ("domain.dx", "0.5e-3", "a number"),
+        ("domain.dx", 10**400, "a number"),
+        ("domain.lower", [0.0, "0"], "numbers"),
+        ("schedule.rows", 10.0, "an integer"),
+        ("schedule.dt", [1e-8], "a number or none"),
+        ("output.movie", 1, "true or false"),
+        ("bodies.0.region", {"type": "Linear"}, "Box, Disc"),
+        ("bodies.0.seeding", {"type": "Linear"}, "Lattice or Jittered"),
+        ("rock.criterion", {"type": "Void"}, "MohrCoulomb or Unbreakable"),
+        ("loading.boundaries", [{"type": "Affine"}], "a list of Platen, Wall or Fixed"),
+        ("bodies", {"type": "Affine"}, "a list of Body"),
+    ],
+)
+def test_recorded_value_of_a_wrong_kind_is_refused_by_place(place, value, words):
+    plain = owner = to_plain(make())
+    *path, name = place.split(".")
+    for step in path:
+        owner = owner[int(step)] if step.isdigit() else owner[step]
+    owner[name] = value
+    message = refusal(lambda: from_plain(plain))
+    assert message.startswith(f"scene.{place} = ".replace(".0.", "[0].")) and " is refused: it must be " in message
+    assert words in message
+
+
+def test_whole_numbers_will_do_for_numbers():
+    plain = to_plain(make())
+    plain["loading"]["time_scale"], plain["domain"]["lower"] = 2, [-1, 0]
+    assert from_plain(plain).density == 4 * 2600.0
+
+
 def test_only_dataclasses_of_scenes_can_be_named():
     assert all(dataclasses.is_dataclass(kind) and kind.__module__.startswith("rsmpm_ti.") for kind in KNOWN.values())
     assert "Scene" in KNOWN and "Simulation" not in KNOWN
 
 
-@pytest.mark.parametrize("text", ["", "{", "[1, 2]", "3", '"Scene"', '{"type": "Linear"}', '{"scene": null}'])
+@pytest.mark.parametrize(
+    "text", ["", "{", "[1, 2]", "3", "9" * 5000, "[" * 100_000, '"Scene"', '{"type": "Linear"}', '{"scene": null}']
+)
 def test_file_that_holds_no_scene_is_refused(tmp_path, text):
     path = tmp_path / "scene.json"
     path.write_text(text)
