@@ -20,6 +20,11 @@ from rsmpm_ti.spec import Scene
 E_PRIME = 17e9 / (1.0 - 0.14**2)
 
 
+def show(name: str, found: float, reference: float) -> None:
+    """For `pytest -rP`, which prints it: README's table is made of these lines."""
+    print(f"{name}: found {found:.5g}, reference {reference:.5g}, {100 * (found / reference - 1):+.2f} %")
+
+
 def as_in_the_paper(name: str, **keywords) -> Scene:
     """Linear functions on a lattice, as the static references have them."""
     scene = load_scene(name, **keywords)
@@ -36,6 +41,8 @@ def in_flaw_frame(x, centre, angle: float) -> np.ndarray:
 @pytest.mark.parametrize("dx", [1e-3, pytest.param(0.5e-3, marks=pytest.mark.validation)])
 def test_intact_specimen_has_the_plane_strain_modulus_and_fails_in_shear_at_its_ucs(dx):
     result = simulate(as_in_the_paper("intact", dx=dx, strain_end=1.5e-3, time_scale=40.0))
+    show(f"intact modulus, dx {dx} m [Pa]", result.summary["apparent_modulus_Pa"], E_PRIME)
+    show(f"intact first failure, dx {dx} m [Pa]", result.summary["first_failure_stress_Pa"], 25.52e6)
     # the slope is read up to a strain of 1.3e-3, where log and engineering strain differ by 0.07 %
     assert result.summary["apparent_modulus_Pa"] == pytest.approx(E_PRIME, rel=0.002)
     assert result.summary["first_failure_mode"] == "shear"
@@ -45,6 +52,7 @@ def test_intact_specimen_has_the_plane_strain_modulus_and_fails_in_shear_at_its_
 @pytest.mark.parametrize("dx", [1e-3, pytest.param(0.5e-3, marks=pytest.mark.validation)])
 def test_direct_tension_fails_at_the_tensile_strength(dx):
     result = simulate(as_in_the_paper("intact", dx=dx, strain_end=-1.2e-4, time_scale=10.0))
+    show(f"direct tension, dx {dx} m [Pa]", result.summary["first_failure_stress_Pa"], -2e6)
     assert result.summary["first_failure_mode"] == "tension"
     assert result.summary["first_failure_stress_Pa"] == pytest.approx(-2.0e6, rel=0.01)
 
@@ -53,13 +61,17 @@ def test_slit_specimen_has_the_static_modulus_and_first_failure():
     """One run gives both: the modulus before the first failure, and that failure's load and place."""
     scene = as_in_the_paper("cube", flaw_width=1e-3, strain_end=5.6e-5, time_scale=4.0)
     result = simulate(scene)
+    show("slit specimen modulus / E'", result.summary["apparent_modulus_Pa"] / E_PRIME, 0.9689)
+    show("slit specimen first failure [Pa]", result.summary["first_failure_stress_Pa"], 0.782e6)
     # mass scaling by 4^2 leaves waves of a few parts in a thousand in the load
     assert result.summary["apparent_modulus_Pa"] / E_PRIME == pytest.approx(0.9689, rel=0.003)
     assert result.summary["platen_imbalance"] < 0.01
     assert result.summary["energy_balance_error_elastic"] < 0.02
     assert result.summary["first_failure_mode"] == "tension"
     assert result.summary["first_failure_stress_Pa"] == pytest.approx(0.782e6, rel=0.05)
+    print("platen imbalance", result.summary["platen_imbalance"], "energy", result.summary["energy_balance_error"])
     place = in_flaw_frame(result.summary["first_failure_position_m"], (0.025, 0.05), 45.0)
+    print("at", place)
     place *= np.sign(place[0])  # or its image by half a turn
     assert np.abs(place - np.array([7.07e-3, 0.53e-3])).max() < 0.5e-3  # one cell
 
@@ -92,13 +104,17 @@ def test_intact_disc_has_the_stress_of_hondros_at_its_centre(taichi_f64, dx, tol
     centre = np.linalg.norm(snapshot.x - 0.05, axis=1) < 2e-3
     expected = hondros_centre(5.0)
     for axis in (0, 1):
-        assert snapshot.sigma[centre, axis, axis].mean() / nominal == pytest.approx(expected[axis], rel=tolerance)
+        found = snapshot.sigma[centre, axis, axis].mean() / nominal
+        show(f"disc centre s_{'xy'[axis]} / s0, dx {dx} m", found, expected[axis])
+        assert found == pytest.approx(expected[axis], rel=tolerance)
 
 
 def test_slit_disc_fails_first_at_the_slits_end_at_the_static_load():
     scene = as_in_the_paper("disc", strain_end=8e-5, time_scale=8.0)
     result = simulate(scene)
     assert result.summary["first_failure_mode"] == "tension"
+    show("slit disc first failure P/(pi R B) [Pa]", result.summary["first_failure_stress_Pa"], 0.210e6)
+    print("at", result.summary["first_failure_position_m"])
     assert result.summary["first_failure_stress_Pa"] == pytest.approx(0.210e6, rel=0.05)
     place = np.abs(np.array(result.summary["first_failure_position_m"]) - 0.05)
     assert np.abs(place - np.array([0.12e-3, 15.12e-3])).max() < 0.5e-3
