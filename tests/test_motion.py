@@ -28,11 +28,11 @@ def block(**changes) -> Scene:
     return Scene(**settings | changes)
 
 
-@pytest.mark.parametrize("order", ["musl", "usf", "usl"])
-@pytest.mark.parametrize("shape", [Linear(), Gimp(), QuadraticBSpline()], ids=lambda s: type(s).__name__)
+CASES = [("musl", Linear()), ("musl", QuadraticBSpline()), ("usf", Linear()), ("usl", Gimp())]
+
+
+@pytest.mark.parametrize(("order", "shape"), CASES, ids=str)
 def test_free_fall_follows_symplectic_euler(order, shape):
-    if order == "usl" and isinstance(shape, Linear):
-        pytest.skip("refused by Scene: its stable step tends to 0")
     gravity, v0 = (3.0e4, -1.0e5), 5.0
     body = Body(region=Box(lower=(0.01, 0.02), upper=(0.02, 0.03)), velocity=(v0, 0.0))
     scene = block(

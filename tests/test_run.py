@@ -53,7 +53,7 @@ def test_history_and_events_hold_what_the_summary_says(run_folder):
     assert list(events[0]) == ["time_s", "x_m", "y_m", "mode", "sigma_1_Pa", "sigma_3_Pa", "released_energy_J"]
     assert len(events) == summary["failed_tension"] + summary["failed_shear"] > 0
     assert float(history[-1]["failed_tension"]) == summary["failed_tension"]
-    assert summary["steps"] == 1636 or summary["steps"] > 100
+    assert summary["steps"] * summary["dt_s"] == pytest.approx(2.5e-4 / 0.05, rel=2e-3)  # strain over its rate
     assert float(history[-1]["axial_strain"]) == pytest.approx(2.5e-4, rel=2e-3)  # whole steps only
     stress = [0.5 * (float(r["stress_top_Pa"]) + float(r["stress_bottom_Pa"])) for r in history]
     assert max(stress) == pytest.approx(summary["peak_stress_Pa"], rel=1e-9)
