@@ -9,8 +9,8 @@ from rsmpm_ti.errors import SceneError, UnstableRun
 from rsmpm_ti.library import available, find, keywords_of, load_scene, scene_name
 from rsmpm_ti.spec import Scene
 
-QUICK_FRAMES = 15
-"""Frames at equal strain of a --quick run: painting would otherwise take longer than solving."""
+QUICK_FRAMES, QUICK_ROWS = 10, 250
+"""Frames and history rows of a --quick run: painting and looking would otherwise take longer than solving."""
 
 PARTICLE_STEPS_PER_S = 8e6
 """What `--check` assumes for its estimate: measured for quadratic B-splines on two cores; see README."""
@@ -57,7 +57,10 @@ def build(options: argparse.Namespace) -> Scene:
         output = replace(output, movie=False)
     if options.painter:
         output = replace(output, painter=options.painter)
-    scene = replace(scene, output=output)
+    schedule = scene.schedule
+    if options.quick and "schedule.rows" not in settings:
+        schedule = replace(schedule, rows=min(schedule.rows, QUICK_ROWS))
+    scene = replace(scene, output=output, schedule=schedule)
     return scene.elastic() if options.elastic else scene
 
 

@@ -52,9 +52,10 @@ def sort_particles(sim: Simulation) -> None:
     cell_keys(sim)
     key = sim.particles.key.to_numpy()
     order = np.argsort(key, kind="stable").astype(np.int32)
-    sim.particles.order.from_numpy(order)
-    reorder(sim)
-    cell_keys(sim)
+    if not np.array_equal(order, np.arange(len(order))):
+        sim.particles.order.from_numpy(order)
+        reorder(sim)
+        cell_keys(sim)
     sim.traversal.refresh(key[order] // int(np.prod(sim.grid.nodes[1:])))
     sim.nodes.forget_empty()
 

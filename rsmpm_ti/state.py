@@ -219,11 +219,14 @@ class Simulation:
                 for p, body in zip(positions, scene.bodies, strict=True)
             ]
         )
-        particles.reference.from_numpy(x.astype(kind))
-        particles.v.from_numpy(v.astype(kind))
-        particles.volume.from_numpy(volume.astype(kind))
+        # already in cell order, so that the first sort has nothing to move and its kernel need not be compiled
+        base = np.floor((x - np.array(self.grid.origin)) * self.grid.inv_dx - self.shape.shift).astype(int)
+        order = np.argsort(np.ravel_multi_index(base.T, self.grid.nodes, mode="clip"), kind="stable")
+        particles.reference.from_numpy(x[order].astype(kind))
+        particles.v.from_numpy(v[order].astype(kind))
+        particles.volume.from_numpy(volume[order].astype(kind))
         particles.J.fill(1.0)
-        particles.id.from_numpy(np.arange(len(x), dtype=np.int32))
+        particles.id.from_numpy(order.astype(np.int32))
 
 
 def initial_velocity(scene: Scene, body_index: int, x: np.ndarray) -> np.ndarray:

@@ -7,7 +7,7 @@ from rsmpm_ti.seeding import Jittered
 from rsmpm_ti.spec import Affine, Body, Domain, Loading, Scene, Schedule
 from rsmpm_ti.units import GPa, MPa, mm
 
-QUICK = {"dx": 1.0 * mm, "flaw_width": 3.0 * mm, "time_scale": 12.0}
+QUICK = {"dx": 1.0 * mm, "flaw_width": 3.0 * mm, "time_scale": 16.0}
 
 
 def scene(

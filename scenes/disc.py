@@ -10,7 +10,7 @@ from rsmpm_ti.shape import Gimp
 from rsmpm_ti.spec import Body, Domain, Loading, Ramp, Scene, Schedule
 from rsmpm_ti.units import GPa, MPa, mm, ms
 
-QUICK = {"dx": 1.0 * mm, "flaw_width": 2.0 * mm, "time_scale": 12.0}
+QUICK = {"dx": 1.0 * mm, "flaw_width": 2.0 * mm, "time_scale": 16.0}
 
 
 def scene(
