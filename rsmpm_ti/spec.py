@@ -277,6 +277,7 @@ class Scene:
     def _check_step(self) -> None:
         limit = (USL_CFL if self.order == "usl" else self.shape.stable_cfl) * self.domain.dx / self.wave_speed
         transit = self.domain.dx / self.wave_speed
+        true_transit = self.domain.dx / self.rock.wave_speed()  # without mass scaling: what the paper's digits are
         if 0.0 < self.dt <= limit:
             name = "t_end" if self.schedule.strain_end is None else "strain_end"
             if not self.t_end / self.dt <= MOST:
@@ -286,8 +287,8 @@ class Scene:
         if self.schedule.dt is not None and math.isclose(self.schedule.dt, PAPER_DT, rel_tol=0.01):
             raise SceneError(
                 f"schedule.dt = {self.schedule.dt:g} s is refused: the paper prints this value, but it is "
-                f"{self.schedule.dt / transit:.0f} times dx/c_p = {transit:.5g} s, the time a P-wave needs for one "
-                f"cell; its digits are those of dx/c_p, so its exponent or unit is wrong; leave dt out or use at "
+                f"{self.schedule.dt / true_transit:.0f} times dx/c_p = {true_transit:.5g} s, the time a P-wave needs "
+                f"for one cell; its digits are those of dx/c_p, so its exponent or unit is wrong; leave dt out or use at "
                 f"most {limit:.4g} s"
             )
         given = "schedule.dt" if self.schedule.dt is not None else "schedule.cfl"

@@ -115,6 +115,7 @@ class Reference:
 
 
 def tensor(packed) -> np.ndarray:
+    """Packed [n, 4 or 6] -> [n, 3, 3], from the definition of the packing."""
     full = np.zeros((len(packed), 3, 3))
     for k in range(packed.shape[1]):
         a, b = PLACES[k]

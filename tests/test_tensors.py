@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 import taichi as ti
 from harness import epsilon, flat, matrix, on_rows, rounded, vector
+from plain_mpm import PLACES, tensor
 
 from rsmpm_ti.tensors import (
     PACKED_LENGTH,
@@ -19,17 +20,7 @@ from rsmpm_ti.tensors import (
     unpack,
 )
 
-PLACES = ((0, 0), (1, 1), (2, 2), (0, 1), (1, 2), (2, 0))
 both_dims = pytest.mark.parametrize("dim", [2, 3])
-
-
-def tensor(packed) -> np.ndarray:
-    """Packed [n, 4 or 6] -> [n, 3, 3], from the definition of the packing."""
-    full = np.zeros((len(packed), 3, 3))
-    for k in range(packed.shape[1]):
-        a, b = PLACES[k]
-        full[:, a, b] = full[:, b, a] = packed[:, k]
-    return full
 
 
 def packed(full, dim: int) -> np.ndarray:
