@@ -288,8 +288,8 @@ class Scene:
             raise SceneError(
                 f"schedule.dt = {self.schedule.dt:g} s is refused: the paper prints this value, but it is "
                 f"{self.schedule.dt / true_transit:.0f} times dx/c_p = {true_transit:.5g} s, the time a P-wave needs "
-                f"for one cell; its digits are those of dx/c_p, so its exponent or unit is wrong; leave dt out or use at "
-                f"most {limit:.4g} s"
+                f"for one cell; its digits are those of dx/c_p, so its exponent or unit is wrong; leave dt out or use "
+                f"at most {limit:.4g} s"
             )
         given = "schedule.dt" if self.schedule.dt is not None else "schedule.cfl"
         raise refuse(
