@@ -133,7 +133,12 @@ def load_limits(scene: Scene, volume: float) -> tuple[float | None, float | None
     if scene.loading.platens is None or scene.loading.width is None:
         return None, None
     strain = abs(scene.schedule.strain_end or scene.loading.strain_rate * scene.t_end)
-    load = scene.rock.elasticity.plane_strain_modulus * strain * volume / (scene.loading.height * scene.loading.width)
+    load = (
+        scene.rock.elasticity.uniaxial_modulus(scene.dim)
+        * strain
+        * volume
+        / (scene.loading.height * scene.loading.width)
+    )
     if isinstance(scene.rock.criterion, MohrCoulomb):
         load = min(load, 1.05 * scene.rock.criterion.ucs)
     return strain, load

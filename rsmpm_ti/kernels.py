@@ -83,10 +83,11 @@ def same_run(sim: ti.template(), xi, base):
 
 
 @ti.func
-def p2g_span(sim: ti.template(), start, stop, momentum: ti.template(), force: ti.template()):
+def p2g_span(sim: ti.template(), start, stop, momentum: ti.template(), force: ti.template(), time):
     """m_i = sum w_ip m_p, (mv)_i = sum w_ip m_p v_p, f_i = -sum V_p (sigma_p - q) grad w_ip (paper eq. 7-9).
 
-    Eq. 9 of the paper says deviatoric stress; the total stress is meant.
+    Eq. 9 of the paper says deviatoric stress; the total stress is meant. A force field adds w_ip m_p b(X_p, time);
+    a uniform body force is added at the nodes, where it costs less.
     """
     particles, nodes, grid = sim.particles, sim.nodes, sim.grid
     p = start
@@ -103,6 +104,9 @@ def p2g_span(sim: ti.template(), start, stop, momentum: ti.template(), force: ti
             sigma = particles.sigma[p]
             if ti.static(particles.viscous):
                 sigma -= isotropic(particles.q[p], sigma.n)
+            b_p = ti.Vector.zero(float, sim.dim)
+            if ti.static(sim.driven and force):
+                b_p = field_acceleration(sim, p, time)
             for k, offset in ti.static(enumerate(sim.stencil)):
                 if ti.static(momentum):
                     m_ip = tensor_weight(w, offset) * m_p
@@ -112,6 +116,8 @@ def p2g_span(sim: ti.template(), start, stop, momentum: ti.template(), force: ti
                         mv[k, d] += m_ip * v_ip[d]
                 if ti.static(force):
                     push = V_p * in_plane_times(sigma, tensor_gradient(w, dw, offset, grid.inv_dx))
+                    if ti.static(sim.driven):
+                        push -= tensor_weight(w, offset) * m_p * b_p
                     for d in ti.static(range(sim.dim)):
                         f[k, d] -= push[d]
             p += 1
@@ -127,6 +133,12 @@ def p2g_span(sim: ti.template(), start, stop, momentum: ti.template(), force: ti
 
 
 @ti.func
+def field_acceleration(sim: ti.template(), p, time):
+    """b(X_p, t) of the scene's force field [m/s^2]; mass scaling leaves its force unchanged."""
+    return sim.lightness * sim.force_field.acceleration(sim.particles.reference[p], time)
+
+
+@ti.func
 def carried_velocity(sim: ti.template(), p, to_node):
     """Velocity that a particle carries to a node `to_node` cells away: with an affine matrix, v_p + C (x_i - x_p)."""
     v = sim.particles.v[p]
@@ -136,12 +148,12 @@ def carried_velocity(sim: ti.template(), p, to_node):
 
 
 @ti.kernel
-def p2g(sim: ti.template(), momentum: ti.template(), force: ti.template(), colour: int):
+def p2g(sim: ti.template(), momentum: ti.template(), force: ti.template(), colour: int, time: float):
     """Particles of one colour to nodes: mass and momentum, force, or both in one pass."""
     for t in range(sim.traversal.items):
         start, stop = sim.traversal.span_of_colour(t, colour)
         if stop > start:
-            p2g_span(sim, start, stop, momentum, force)
+            p2g_span(sim, start, stop, momentum, force, time)
 
 
 @ti.func
@@ -219,14 +231,16 @@ def velocity_to_particle(sim: ti.template(), p, w, xi, base, v_i: ti.template(),
 
 
 @ti.func
-def move(sim: ti.template(), p, v_pic, dt, slot):
+def move(sim: ti.template(), p, v_pic, dt, time, slot):
     """x_p <- x_p + dt v_pic, and the work of the body force."""
     particles, ledger = sim.particles, sim.ledger
     # not +=, which is an atomic add on a field: a locked exchange that also stops the next particle from starting
     particles.u[p] = particles.u[p] + dt * v_pic
-    if ti.static(sim.heavy):
+    if ti.static(sim.heavy or sim.driven):
         # the velocity at the middle of the step: then a free fall's work is its kinetic energy to round-off
         b = ti.Vector(sim.acceleration)
+        if ti.static(sim.driven):
+            b += field_acceleration(sim, p, ti.cast(time, float) - dt)
         power = (v_pic - 0.5 * dt * b).dot(b) * sim.density * particles.volume[p]
         ledger.body_work[slot] += ti.cast(dt * power, ti.f64)
 
@@ -314,7 +328,7 @@ def g2p_span(sim: ti.template(), start, stop, slot, what: ti.template(), dt, tim
             if ti.static(what[0]):
                 velocity_to_particle(sim, p, w, xi, base, v_i, dv_i)
             if ti.static(what[1]):
-                move(sim, p, interpolate(sim, w, v_i), dt, slot)
+                move(sim, p, interpolate(sim, w, v_i), dt, time, slot)
             if ti.static(what[2]):
                 sim.particles.L[p] = velocity_gradient(sim, w, dw, w_i)
             p += 1

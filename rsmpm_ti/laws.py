@@ -25,12 +25,16 @@ def _positive(owner: str, **values: float) -> None:
 class Hooke:
     """Isotropic linear elasticity with objective rotation.  E [Pa], nu [-].
 
+    `plane_stress` (2D only): the thickness strain is the one that keeps sigma_zz = 0, d_eps_zz = -nu/(1 - nu)
+    (d_eps_xx + d_eps_yy); otherwise 2D is plane strain.
+
     sigma <- R sigma R^T + lambda tr(d_eps) 1 + 2 mu d_eps, R of Hughes & Winget (1980): the invariants of a spinning
     stressed particle stay constant, where the explicit Jaumann form grows them by exp(8 pi^2/n) per turn of n steps.
     """
 
     E: float
     nu: float
+    plane_stress: bool = False
 
     def __post_init__(self):
         _positive("elasticity", E=self.E)
@@ -50,24 +54,36 @@ class Hooke:
         return self.E / (3.0 * (1.0 - 2.0 * self.nu))
 
     @property
-    def constrained(self) -> float:
-        """P-wave modulus lambda + 2 mu [Pa]."""
-        return self.lam + 2.0 * self.mu
+    def p_wave_modulus(self) -> float:
+        """rho c^2 of the fastest wave [Pa]: lambda + 2 mu, or E/(1 - nu^2) in a plate that is free to thicken."""
+        return self.E / (1.0 - self.nu**2) if self.plane_stress else self.lam + 2.0 * self.mu
 
-    @property
-    def plane_strain_modulus(self) -> float:
-        return self.E / (1.0 - self.nu**2)
+    def uniaxial_modulus(self, dim: int) -> float:
+        """Axial stress over axial strain of a free-sided specimen [Pa]: E/(1 - nu^2) in plane strain, else E."""
+        return self.E / (1.0 - self.nu**2) if dim == 2 and not self.plane_stress else self.E
 
-    @property
-    def plane_strain_ratio(self) -> float:
-        """Lateral over axial strain of a free-sided plane-strain specimen."""
-        return self.nu / (1.0 - self.nu)
+    def lateral_ratio(self, dim: int) -> float:
+        """Lateral over axial strain of a free-sided specimen: nu/(1 - nu) in plane strain, else nu."""
+        return self.nu / (1.0 - self.nu) if dim == 2 and not self.plane_stress else self.nu
 
     @ti.func
     def stress(self, sigma, G):
         """New packed stress from the step's displacement gradient G = dt grad v, dim x dim."""
         rotated, d_eps = hughes_winget(sigma, G)
+        if ti.static(self.plane_stress):
+            d_eps[2] = -self.nu / (1.0 - self.nu) * (d_eps[0] + d_eps[1])
         return rotated + isotropic(self.lam * trace(d_eps), sigma.n) + 2.0 * self.mu * d_eps
+
+    @ti.func
+    def volume_ratio(self, G):
+        """Ratio by which the step changes a particle's volume: det(1 + G), and in plane stress the thickness ratio.
+
+        That ratio is det(1 + G)^(-nu/(1 - nu)), reversible, as a crack that opens and closes needs.
+        """
+        ratio = (ti.Matrix.identity(float, G.n) + G).determinant()
+        if ti.static(self.plane_stress):
+            ratio = ratio ** ((1.0 - 2.0 * self.nu) / (1.0 - self.nu))
+        return ratio
 
     @ti.func
     def energy(self, sigma):
@@ -235,5 +251,5 @@ class Rock:
             raise refuse("rock.density", self.density, "such that the wave speed is positive and finite")
 
     def wave_speed(self, time_scale: float = 1.0) -> float:
-        """P-wave speed c_p = sqrt((lambda + 2 mu)/rho) [m/s], with the density scaled by time_scale^2."""
-        return math.sqrt(self.elasticity.constrained / self.density) / time_scale
+        """Speed of the fastest wave, c_p unless in plane stress [m/s], with the density scaled by time_scale^2."""
+        return math.sqrt(self.elasticity.p_wave_modulus / self.density) / time_scale

@@ -26,7 +26,7 @@ def update_stress(sim: ti.template(), p, L, dt):
     Done for failed particles too, which `check_failure` sets right: a step without branches runs faster.
     """
     particles, rock = sim.particles, sim.rock
-    J = particles.J[p] * (ti.Matrix.identity(float, sim.dim) + dt * L).determinant()
+    J = particles.J[p] * rock.elasticity.volume_ratio(dt * L)
     particles.J[p] = J
     particles.sigma[p] = rock.elasticity.stress(particles.sigma[p], dt * L)
     lost = 0.0

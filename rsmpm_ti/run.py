@@ -2,7 +2,6 @@
 
 import contextlib
 import io
-import math
 import os
 import signal
 import threading
@@ -17,12 +16,6 @@ from rsmpm_ti import __version__
 from rsmpm_ti.errors import SceneError, UnstableRun, refuse
 from rsmpm_ti.snapshot import Snapshot
 from rsmpm_ti.spec import Scene
-
-STRAY_SHARE = 0.02
-"""Share of particles outside the cell they were sorted into above which they are sorted again."""
-
-SAFE_CELLS = 0.4
-"""Between two looks at the particles none may move further than this many cells, or stripes could meet."""
 
 
 @dataclass(frozen=True)
@@ -73,10 +66,10 @@ def simulate(
         raise refuse("arch", arch, "'cpu' or 'cuda'")
     if threads is not None and not (isinstance(threads, int) and 1 <= threads <= 1024):
         raise refuse("threads", threads, "a whole number from 1 to 1024")
-    positions = scene.particles()
+    seeds = scene.particles()
     out = _prepare(scene, out)
     real, gpu = start_taichi(precision, arch, threads)
-    run = _Run(scene, positions, out, name, real, gpu, progress, precision)
+    run = _Run(scene, seeds, out, name, real, gpu, progress, precision)
     return run.go()
 
 
@@ -119,20 +112,15 @@ def start_taichi(precision: str, arch: str, threads: int | None):
 class _Run:
     """One run: the loop, and what is written when."""
 
-    def __init__(self, scene, positions, out, name, real, gpu, progress, precision):
-        from rsmpm_ti.measure import survey
+    def __init__(self, scene, seeds, out, name, real, gpu, progress, precision):
+        from rsmpm_ti.drive import Drive
         from rsmpm_ti.observe import History
-        from rsmpm_ti.sorting import sort_particles
-        from rsmpm_ti.state import Simulation
-        from rsmpm_ti.stepper import Clock
 
         self.scene, self.out, self.name, self.progress, self.precision = scene, out, name, progress, precision
         self.compile_s = -time.perf_counter()
-        self.sim = Simulation(scene, positions, real, gpu)
-        sort_particles(self.sim)
-        self.clock = Clock(self.sim)
-        self.survey = survey(self.sim)
-        self.history = History(self.sim, self.clock, self.survey)
+        self.drive = Drive(scene, seeds, real, gpu)
+        self.sim, self.clock = self.drive.sim, self.drive.clock
+        self.history = History(self.sim, self.clock, self.drive.survey)
         self.row_steps = max(1, self.clock.total // scene.schedule.rows)
         self.gallery = self.timetable = None
         self.interrupted = threading.Event()
@@ -141,10 +129,7 @@ class _Run:
 
             self._write_record()
             self.timetable = Timetable(scene, self.sim.particles.count)
-            volume = sum(
-                len(x) * (scene.domain.dx / body.seeding.particles_per_axis) ** scene.dim
-                for x, body in zip(positions, scene.bodies, strict=True)
-            )
+            volume = float(sum(body.volume.sum() for body in seeds))
             self.gallery = Gallery(scene, name, out, volume)
 
     def go(self) -> Result:
@@ -173,34 +158,17 @@ class _Run:
         """One step apart, so that compilation is not counted as running."""
         import taichi as ti
 
-        from rsmpm_ti.measure import survey
-
         self._output(force=True)
-        self.clock.advance(1)
-        survey(self.sim)
+        self.drive.advance(1)
         ti.sync()
         self.compile_s += time.perf_counter()
         self.started, self.steps_before = time.perf_counter(), self.clock.step
         self.painting_s = 0.0
 
     def _row(self) -> None:
-        """Steps up to the next history row, in chunks short enough that no particle can leave its stripe's reach."""
-        from rsmpm_ti.measure import survey
-        from rsmpm_ti.observe import guard
-        from rsmpm_ti.sorting import sort_particles
-
-        remaining = self.row_steps
-        while remaining > 0 and not self.clock.done:
-            travel = max(self.survey.speed * self.clock.dt, 1e-30)
-            steps = min(remaining, max(1, math.floor(SAFE_CELLS * self.scene.domain.dx / travel)))
-            self.clock.advance(steps)
-            remaining -= steps
-            self.survey = survey(self.sim)
-            guard(self.sim, self.clock, self.survey)
-            # stripes bear a stray of one row: half a cell beyond it and SAFE_CELLS more is still less than that
-            if self.survey.far_strays or self.survey.strays > STRAY_SHARE * self.sim.particles.count:
-                sort_particles(self.sim)
-        self.history.record(self.survey)
+        """Steps up to the next history row."""
+        self.drive.advance(self.row_steps)
+        self.history.record(self.drive.survey)
         self._output()
         if self.progress is not None:
             self.progress(self._progress())

@@ -66,7 +66,7 @@ def build(options: argparse.Namespace) -> Scene:
 
 def describe(scene: Scene) -> str:
     """What would be run, as `--check` prints it."""
-    count = sum(len(x) for x in scene.particles())
+    count = sum(len(body.x) for body in scene.particles())
     nodes = 1
     for a, b in zip(scene.domain.lower, scene.domain.upper, strict=True):
         nodes *= round((b - a) / scene.domain.dx) + 7

@@ -6,6 +6,7 @@ Also the check that a slit's two faces really separate, which needs the particle
 import itertools
 import math
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 
@@ -25,6 +26,20 @@ def _check_per_axis(value: int) -> None:
         raise refuse("seeding.particles_per_axis", value, "a whole number from 1 to 8")
 
 
+class Seeds(NamedTuple):
+    """Where the particles of a body start: x [m], [n, dim], and their volume [m^dim], [n]."""
+
+    x: np.ndarray
+    volume: np.ndarray
+
+
+SAMPLES = 8
+"""Sample points per axis by which a sub-cell that an edge cuts is measured: its share to about a percent."""
+
+LEAST_SHARE = 0.05
+"""A cut sub-cell with less of its volume inside gets no particle."""
+
+
 def _lattice(lower: np.ndarray, upper: np.ndarray, origin: np.ndarray, spacing: float) -> np.ndarray:
     """Centres of the sub-cells of the background grid that overlap a box, first axis fastest, [n, dim]."""
     axes = []
@@ -34,19 +49,55 @@ def _lattice(lower: np.ndarray, upper: np.ndarray, origin: np.ndarray, spacing: 
     return np.stack([c.ravel(order="F") for c in np.meshgrid(*axes, indexing="ij")], axis=1)
 
 
+def _whole_cells(region, origin: np.ndarray, spacing: float) -> Seeds:
+    """One particle per sub-cell whose centre lies inside, with the sub-cell's volume: edges become stairs."""
+    x = _lattice(*region.bounds(), origin, spacing)
+    x = x[region.contains(x)]
+    return Seeds(x, np.full(len(x), spacing ** x.shape[1]))
+
+
+def _cut_cells(region, origin: np.ndarray, spacing: float) -> Seeds:
+    """One particle per sub-cell that has material, at the centroid of that material and with its volume."""
+    x = _lattice(*region.bounds(), origin, spacing)
+    dim = x.shape[1]
+    corners = np.array(list(itertools.product((-0.5, 0.0, 0.5), repeat=dim))) * (1.0 - 1e-6) * spacing
+    inside = np.array([region.contains(x + corner) for corner in corners])
+    whole, cut = inside.all(axis=0), inside.any(axis=0) & ~inside.all(axis=0)
+    steps = (np.arange(SAMPLES) + 0.5) / SAMPLES - 0.5
+    samples = np.array(list(itertools.product(steps, repeat=dim))) * spacing
+    count, total = np.zeros(cut.sum()), np.zeros((cut.sum(), dim))
+    for sample in samples:
+        held = region.contains(x[cut] + sample)
+        count += held
+        total += held[:, None] * sample
+    share = count / len(samples)
+    kept = share >= LEAST_SHARE
+    centroid = x[cut][kept] + total[kept] / count[kept][:, None]
+    points, volume = x.copy(), np.where(whole, 1.0, 0.0)
+    places = np.flatnonzero(cut)[kept]
+    points[places], volume[places] = centroid, share[kept]
+    filled = volume > 0.0
+    return Seeds(points[filled], volume[filled] * spacing**dim)
+
+
 @dataclass(frozen=True, kw_only=True)
 class Lattice:
-    """`particles_per_axis` particles along each axis of a cell, at the centres of equal sub-cells."""
+    """`particles_per_axis` particles along each axis of a cell, at the centres of equal sub-cells.
+
+    `fitted`: sub-cells that an edge of the body cuts get a particle with the volume and at the centroid of what lies
+    inside; otherwise edges are stairs of whole sub-cells, as in the paper.
+    """
 
     particles_per_axis: int = 2
+    fitted: bool = False
 
     def __post_init__(self):
         _check_per_axis(self.particles_per_axis)
 
-    def points(self, region, origin: np.ndarray, dx: float) -> np.ndarray:
-        """Particle positions [m], [n, dim]."""
-        x = _lattice(*region.bounds(), origin, dx / self.particles_per_axis)
-        return x[region.contains(x)]
+    def fill(self, region, origin: np.ndarray, dx: float) -> Seeds:
+        """Particles of a region on a grid of cells dx [m] with a node at origin [dim]."""
+        fill = _cut_cells if self.fitted else _whole_cells
+        return fill(region, origin, dx / self.particles_per_axis)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -59,6 +110,7 @@ class Jittered:
     particles_per_axis: int = 2
     amount: float = 0.1
     seed: int = 1
+    fitted: bool = False
 
     def __post_init__(self):
         _check_per_axis(self.particles_per_axis)
@@ -67,36 +119,35 @@ class Jittered:
         if not (isinstance(self.seed, int) and self.seed >= 0):
             raise refuse("seeding.seed", self.seed, "a whole number, zero or more")
 
-    def points(self, region, origin: np.ndarray, dx: float) -> np.ndarray:
-        """Particle positions [m], [n, dim]. Membership is decided before the move, so that faces stay smooth
+    def fill(self, region, origin: np.ndarray, dx: float) -> Seeds:
+        """Particles of a region. Membership is decided before the move, so that faces stay smooth
         in the mean and the number of particles does not depend on the seed; no particle enters a slit."""
-        spacing = dx / self.particles_per_axis
-        lattice = _lattice(*region.bounds(), origin, spacing)
-        lattice = lattice[region.contains(lattice)]
-        move = np.random.default_rng(self.seed).uniform(-self.amount, self.amount, lattice.shape) * spacing
-        moved = lattice + move
-        return np.where(region.contains(moved)[:, None], moved, lattice)
+        lattice = Lattice(particles_per_axis=self.particles_per_axis, fitted=self.fitted).fill(region, origin, dx)
+        reach = self.amount * dx / self.particles_per_axis
+        moved = lattice.x + np.random.default_rng(self.seed).uniform(-reach, reach, lattice.x.shape)
+        return Seeds(np.where(region.contains(moved)[:, None], moved, lattice.x), lattice.volume)
 
 
-def slit_bridge(x: np.ndarray, slit: Slit, shape, particles_per_axis: int, dx: float, origin: np.ndarray) -> float:
+def slit_bridge(seeds: Seeds, slit: Slit, shape, dx: float, origin: np.ndarray) -> float:
     """Largest share of a full node's mass that both faces of a slit put on one node, away from the slit's ends.
 
-    x [n, 2] are the particles of the cut body. 0 means that no node sees both faces.
+    `seeds` are the particles of the cut body. 0 means that no node sees both faces.
     """
+    x = seeds.x
     reach = (shape.width / 2.0) * dx
     frame = slit.frame(x)
     near = (np.abs(frame[:, 0]) < 0.5 * slit.length + 2.0 * reach) & (
         np.abs(frame[:, 1]) < 0.5 * slit.width + 2.0 * reach
     )
-    x, side = x[near, :2], frame[near, 1] > 0.0
+    x, side, mass_p = x[near, :2], frame[near, 1] > 0.0, seeds.volume[near] / dx ** x.shape[1]
     base = np.floor((x - origin[:2]) / dx - shape.shift).astype(int)
     n = tuple(base.max(axis=0) + shape.width) if len(base) else (1, 1)
     mass = np.zeros((2, *n))
     for offset in itertools.product(range(shape.width), repeat=2):
         node = base + np.array(offset)
         w = np.prod(shape.profile((x - origin[:2]) / dx - node), axis=1)
-        np.add.at(mass, (side.astype(int), node[:, 0], node[:, 1]), w)
-    share = mass.min(axis=0) / particles_per_axis**2
+        np.add.at(mass, (side.astype(int), node[:, 0], node[:, 1]), w * mass_p)
+    share = mass.min(axis=0)
     nodes = np.stack(np.meshgrid(*(np.arange(k) for k in n), indexing="ij"), axis=-1).reshape(-1, 2) * dx + origin[:2]
     inner = np.abs(slit.frame(nodes)[:, 0]) < 0.5 * slit.length - math.sqrt(2.0) * reach
     return float(share.ravel()[inner].max(initial=0.0))
@@ -124,8 +175,7 @@ def _bridge_of_width(region, slit: Slit, width: float, seeding, shape, dx: float
     lower, upper = (b[:2] for b in region.bounds())
     low, high = trial.bounds()
     patch = _Patch(lower=np.maximum(lower, low - 4 * dx), upper=np.minimum(upper, high + 4 * dx), slit=trial)
-    points = seeding.points(patch, origin[:2], dx)
-    return slit_bridge(points, trial, shape, seeding.particles_per_axis, dx, origin)
+    return slit_bridge(seeding.fill(patch, origin[:2], dx), trial, shape, dx, origin)
 
 
 class _Patch:

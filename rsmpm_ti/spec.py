@@ -12,8 +12,9 @@ from rsmpm_ti.boundaries import Fixed, Platen, Wall
 from rsmpm_ti.errors import SceneError, refuse
 from rsmpm_ti.laws import Rock, Unbreakable
 from rsmpm_ti.regions import Region, check_coordinates, slits_of
-from rsmpm_ti.seeding import Jittered, Lattice, check_slit
+from rsmpm_ti.seeding import Jittered, Lattice, Seeds, check_slit
 from rsmpm_ti.shape import Gimp, Linear, QuadraticBSpline
+from rsmpm_ti.starts import Affine, AtRest, Press, Ramp
 from rsmpm_ti.transfer import Apic, PicFlip
 
 PAPER_DT = 1.91e-5
@@ -73,39 +74,21 @@ class Body:
 
 
 @dataclass(frozen=True, kw_only=True)
-class Affine:
-    """Start with the velocity field of uniform straining between the platens: no first-wave shock."""
-
-
-@dataclass(frozen=True, kw_only=True)
-class Ramp:
-    """Start at rest; platens reach full speed after `time` [s] by a smooth step. At least 5 wave transits."""
-
-    time: float
-
-    def __post_init__(self):
-        if not (math.isfinite(self.time) and self.time > 0.0):
-            raise refuse("start.time", self.time, "a positive time in seconds")
-
-
-@dataclass(frozen=True, kw_only=True)
-class AtRest:
-    """Bodies keep their own initial velocity and platens move at full speed from the first step."""
-
-
-@dataclass(frozen=True, kw_only=True)
 class Loading:
     """What drives the scene.
 
     time_scale k multiplies the density by k^2 (mass scaling), so a quasi-static run takes 1/k of the steps.
     `width` is the loaded length [m] (area [m^2] in 3D) by which platen forces become nominal stress.
-    body_force is an acceleration [m/s^2]; mass scaling leaves the force it makes unchanged.
+    body_force is an acceleration [m/s^2]; mass scaling leaves the force it makes unchanged. `force_field` is one that
+    depends on place and time: an object with a ti.func `acceleration(X, t)` of a particle's initial position [m] and
+    the time [s]. A scene file brings its own, so a scene with one cannot be run again from its record.
     """
 
     boundaries: tuple[Platen | Wall | Fixed, ...] = ()
-    start: Affine | Ramp | AtRest = AtRest()
+    start: Affine | Ramp | Press | AtRest = AtRest()
     time_scale: float = 1.0
     body_force: tuple[float, ...] | None = None
+    force_field: object | None = None
     width: float | None = None
 
     def __post_init__(self):
@@ -113,6 +96,8 @@ class Loading:
             raise refuse("loading.time_scale", self.time_scale, "in [1, 1000]", "1 is the true density")
         if self.body_force is not None and not all(map(math.isfinite, self.body_force)):
             raise refuse("loading.body_force", self.body_force, "finite components in m/s^2")
+        if self.force_field is not None and not callable(getattr(self.force_field, "acceleration", None)):
+            raise refuse("loading.force_field", self.force_field, "an object with a ti.func acceleration(X, t)")
         if self.width is not None and not (math.isfinite(self.width) and self.width > 0.0):
             raise refuse("loading.width", self.width, "a positive length in metres")
 
@@ -193,7 +178,7 @@ class Output:
 
 @dataclass(frozen=True, kw_only=True)
 class Scene:
-    """One numerical experiment, complete. One rock per scene; 2D is plane strain."""
+    """One numerical experiment, complete. One rock per scene; 2D is plane strain unless its rock says otherwise."""
 
     title: str
     domain: Domain
@@ -216,6 +201,8 @@ class Scene:
                 "scene.order = 'usl' with Linear shape functions is refused: its critical step tends to 0 when a "
                 "particle has just entered an empty cell; use 'musl' or 'usf', or another shape function"
             )
+        if self.dim == 3 and self.rock.elasticity.plane_stress:
+            raise refuse("rock.elasticity.plane_stress", True, "False in 3D", "a plate is a 2D scene")
         self._check_bodies()
         self._check_loading()
         self._check_step()
@@ -268,7 +255,11 @@ class Scene:
         if self.schedule.strain_end is not None and not loading.strain_rate * self.schedule.strain_end > 0.0:
             sign = f"of the sign of the platens' strain rate {loading.strain_rate:.6g} 1/s"
             raise refuse("schedule.strain_end", self.schedule.strain_end, sign)
-        if isinstance(loading.start, Ramp) and loading.platens:
+        if isinstance(loading.start, Press) and self.schedule.strain_end is not None:
+            raise SceneError(
+                "start = Press stops the platens itself: give t_end, hold included, no strain_end"
+            )
+        if isinstance(loading.start, (Ramp, Press)) and loading.platens:
             transits = loading.start.time * self.wave_speed / loading.height
             if transits < 5.0:
                 least = f"at least {5.0 * loading.height / self.wave_speed:.4g} s, 5 wave transits"
@@ -328,17 +319,17 @@ class Scene:
     def steps(self) -> int:
         return max(1, math.ceil(self.t_end / self.dt - 1e-9))
 
-    def particles(self) -> list[np.ndarray]:
-        """Initial particle positions of each body [m], [n, dim]; refuses empty bodies and glued slits."""
+    def particles(self) -> list[Seeds]:
+        """Initial positions and volumes of each body's particles; refuses empty bodies and glued slits."""
         origin = np.array(self.domain.lower, dtype=float)
-        points = []
+        seeds = []
         for k, body in enumerate(self.bodies):
             for slit in slits_of(body.region):
                 check_slit(body.region, slit, body.seeding, self.shape, self.domain.dx, origin)
-            points.append(body.seeding.points(body.region, origin, self.domain.dx))
-            if len(points[-1]) == 0:
+            seeds.append(body.seeding.fill(body.region, origin, self.domain.dx))
+            if len(seeds[-1].x) == 0:
                 raise SceneError(f"bodies[{k}].region holds no particle: it is smaller than dx = {self.domain.dx} m")
-        return points
+        return seeds
 
     def elastic(self) -> "Scene":
         """The same scene without failure."""

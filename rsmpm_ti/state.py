@@ -4,6 +4,7 @@ import numpy as np
 import taichi as ti
 
 from rsmpm_ti.errors import SceneError
+from rsmpm_ti.seeding import Seeds
 from rsmpm_ti.shape import offsets
 from rsmpm_ti.spec import Affine, Scene
 from rsmpm_ti.tensors import PACKED_LENGTH
@@ -186,7 +187,7 @@ class Report:
 class Simulation:
     """Everything kernels need, as one object: a kernel launch then looks up one template argument, not ten."""
 
-    def __init__(self, scene: Scene, positions: list[np.ndarray], real=ti.f64, gpu: bool = False):
+    def __init__(self, scene: Scene, seeds: list[Seeds], real=ti.f64, gpu: bool = False):
         self.scene, self.real, self.dim = scene, real, scene.dim
         self.rock, self.shape, self.transfer = scene.rock, scene.shape, scene.transfer
         self.boundaries = scene.loading.boundaries
@@ -196,9 +197,12 @@ class Simulation:
         # mass scaling must leave the weight of a body unchanged, so its acceleration shrinks as its density grows
         force = scene.loading.body_force or (0.0,) * scene.dim
         self.heavy = any(component != 0.0 for component in force)
-        self.acceleration = tuple(component / scene.loading.time_scale**2 for component in force)
+        self.lightness = 1.0 / scene.loading.time_scale**2
+        self.acceleration = tuple(component * self.lightness for component in force)
+        self.force_field = scene.loading.force_field
+        self.driven = self.force_field is not None
         self.grid = Grid(scene)
-        count = sum(len(x) for x in positions)
+        count = sum(len(body.x) for body in seeds)
         if count >= 2**31:
             raise SceneError(f"{count} particles are more than 2^31 - 1; use a larger dx or fewer particles per axis")
         self.particles = Particles(scene, count, real)
@@ -206,19 +210,14 @@ class Simulation:
         self.nodes = Nodes(scene, self.grid, real, use_sparse_grid(scene, count))
         self.events, self.ledger = Events(scene, count, real), Ledger(scene, self.traversal.count)
         self.report = Report(scene)
-        self._fill(scene, positions)
+        self._fill(scene, seeds)
 
-    def _fill(self, scene: Scene, positions: list[np.ndarray]) -> None:
+    def _fill(self, scene: Scene, seeds: list[Seeds]) -> None:
         kind = np.float64 if self.real == ti.f64 else np.float32
         particles = self.particles
-        x = np.concatenate(positions)
-        v = np.concatenate([initial_velocity(scene, k, p) for k, p in enumerate(positions)])
-        volume = np.concatenate(
-            [
-                np.full(len(p), (scene.domain.dx / body.seeding.particles_per_axis) ** scene.dim)
-                for p, body in zip(positions, scene.bodies, strict=True)
-            ]
-        )
+        x = np.concatenate([body.x for body in seeds])
+        v = np.concatenate([initial_velocity(scene, k, body.x) for k, body in enumerate(seeds)])
+        volume = np.concatenate([body.volume for body in seeds])
         # already in cell order, so that the first sort has nothing to move and its kernel need not be compiled
         base = np.floor((x - np.array(self.grid.origin)) * self.grid.inv_dx - self.shape.shift).astype(int)
         order = np.argsort(np.ravel_multi_index(base.T, self.grid.nodes, mode="clip"), kind="stable")
@@ -246,7 +245,7 @@ def initial_velocity(scene: Scene, body_index: int, x: np.ndarray) -> np.ndarray
         axis, elasticity = lower.axis, scene.rock.elasticity
         share = (x[:, axis] - lower.position) / loading.height
         v[:, axis] += lower.speed + (upper.speed - lower.speed) * share
-        ratio = elasticity.plane_strain_ratio if scene.dim == 2 else elasticity.nu
+        ratio = elasticity.lateral_ratio(scene.dim)
         for lateral in (d for d in range(scene.dim) if d != axis):
             v[:, lateral] += ratio * loading.strain_rate * (x[:, lateral] - centre[lateral])
     return v

@@ -1,9 +1,8 @@
-"""Time stepping: musl, usf and usl as lists of passes, the clock that counts them, and the start ramp."""
+"""Time stepping: musl, usf and usl as lists of passes, and the clock that counts them."""
 
 import math
 
 from rsmpm_ti.kernels import clear_nodes, g2p, g2p_remap, momentum_to_velocity, p2g, update_nodes
-from rsmpm_ti.spec import Ramp
 from rsmpm_ti.state import Simulation
 
 VELOCITY_POSITION = (True, True, False)
@@ -12,15 +11,15 @@ STRESS = (False, False, True)
 EVERYTHING = (True, True, True)
 
 
-def scatter_all(sim: Simulation, momentum: bool, force: bool) -> None:
+def scatter_all(sim: Simulation, momentum: bool, force: bool, time: float) -> None:
     for colour in range(sim.traversal.colours):
-        p2g(sim, momentum, force, colour)
+        p2g(sim, momentum, force, colour, time)
 
 
 def musl(sim: Simulation, dt: float, time: float, factor: float) -> None:
     """Stress last, from velocities mapped back from moved particles.  Sulsky, Zhou & Schreyer (1995)."""
     clear_nodes(sim)
-    scatter_all(sim, momentum=True, force=True)
+    scatter_all(sim, momentum=True, force=True, time=time - dt)
     update_nodes(sim, True, dt, factor)
     for colour in range(sim.traversal.colours):
         g2p_remap(sim, colour)
@@ -31,10 +30,10 @@ def musl(sim: Simulation, dt: float, time: float, factor: float) -> None:
 def usf(sim: Simulation, dt: float, time: float, factor: float) -> None:
     """Stress first.  Bardenhagen (2002), J. Comput. Phys. 180:383."""
     clear_nodes(sim)
-    scatter_all(sim, momentum=True, force=False)
+    scatter_all(sim, momentum=True, force=False, time=time - dt)
     momentum_to_velocity(sim, sim.nodes.v, factor)
     g2p(sim, STRESS, dt, time)
-    scatter_all(sim, momentum=False, force=True)
+    scatter_all(sim, momentum=False, force=True, time=time - dt)
     update_nodes(sim, False, dt, factor)
     g2p(sim, VELOCITY_POSITION, dt, time)
 
@@ -42,7 +41,7 @@ def usf(sim: Simulation, dt: float, time: float, factor: float) -> None:
 def usl(sim: Simulation, dt: float, time: float, factor: float) -> None:
     """Stress last, from the updated node velocities; dissipates.  Sulsky, Chen & Schreyer (1994)."""
     clear_nodes(sim)
-    scatter_all(sim, momentum=True, force=True)
+    scatter_all(sim, momentum=True, force=True, time=time - dt)
     update_nodes(sim, True, dt, factor)
     g2p(sim, EVERYTHING, dt, time)
 
@@ -51,13 +50,13 @@ ORDERS = {"musl": musl, "usf": usf, "usl": usl}
 
 
 class Clock:
-    """Counts steps of one run: time [s], platen strain (compression positive), ramp factor of the current time."""
+    """Counts steps of one run: time [s], platen strain (compression positive), platen speed over the full one."""
 
     def __init__(self, sim: Simulation):
         scene = sim.scene
         self._sim, self._pass_list = sim, ORDERS[scene.order]
         self.dt, self.total = scene.dt, scene.steps
-        self.ramp = scene.loading.start.time if isinstance(scene.loading.start, Ramp) else 0.0
+        self.factor = scene.loading.start.factor
         self.strain_rate = scene.loading.strain_rate if scene.loading.platens else math.nan
         self.step, self.strain = 0, 0.0
 
@@ -68,11 +67,6 @@ class Clock:
     @property
     def done(self) -> bool:
         return self.step >= self.total
-
-    def factor(self, time: float) -> float:
-        """Smooth step 3 s^2 - 2 s^3 from rest to full platen speed."""
-        s = min(1.0, time / self.ramp) if self.ramp > 0.0 else 1.0
-        return s * s * (3.0 - 2.0 * s)
 
     def advance(self, steps: int) -> None:
         for _ in range(min(steps, self.total - self.step)):

@@ -11,8 +11,9 @@ ROOT = Path(__file__).resolve().parent.parent
 PACKAGE = ROOT / "rsmpm_ti"
 
 LAYERS = """
-    errors units snapshot tensors regions seeding shape transfer laws boundaries spec traversal state sorting material
-    kernels     measure stepper observe cracks summary output record paint frames library run scene yardstick bench
+    errors units snapshot tensors regions seeding shape transfer laws boundaries starts spec traversal state sorting
+    material kernels measure stepper observe drive cracks summary output record paint frames library run scene verify
+    yardstick bench
 """.split()
 """A module imports only from modules to the left of its own name."""
 

@@ -61,7 +61,7 @@ def test_check_says_what_would_be_run(command, name, quick):
     scene = load_scene(name, quick=bool(quick))
     facts = {line[:12].strip(): line[12:] for line in out.splitlines()}
     assert facts["scene"] == scene.title
-    assert int(facts["particles"]) == sum(len(x) for x in scene.particles())
+    assert int(facts["particles"]) == sum(len(body.x) for body in scene.particles())
     assert facts["steps"].split()[0] == str(scene.steps)
     assert float(facts["dt"].split()[0]) == pytest.approx(scene.dt, rel=1e-3)
 

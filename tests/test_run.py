@@ -132,10 +132,10 @@ def test_unstable_run_says_where_and_keeps_what_there_is(tmp_path):
 
     import rsmpm_ti.run as module
 
-    positions = scene.particles()
+    seeds = scene.particles()
     out = module._prepare(scene, tmp_path)
     real, gpu = module.start_taichi("f64", "cpu", 1)
-    spoil.run = module._Run(scene, positions, out, "intact", real, gpu, spoil, "f64")
+    spoil.run = module._Run(scene, seeds, out, "intact", real, gpu, spoil, "f64")
     with pytest.raises(UnstableRun, match=r"not finite or left the domain at step \d+, t = .* mm"):
         spoil.run.go()
     assert len(table(tmp_path / "history.csv")) > 10

@@ -16,7 +16,7 @@ from rsmpm_ti.shape import Gimp, Linear, QuadraticBSpline
 DX = 0.5e-3
 ORIGIN = np.zeros(2)
 BLOCK = Box(lower=(0.0, 0.0), upper=(0.05, 0.1))
-every_seeding = pytest.mark.parametrize("seeding", variants(seedings, "points"), ids=name_of)
+every_seeding = pytest.mark.parametrize("seeding", variants(seedings, "fill"), ids=name_of)
 
 
 def slit(width: float, angle: float = 45.0) -> Slit:
@@ -29,7 +29,7 @@ def cut(flaw: Slit) -> Difference:
 
 @every_seeding
 def test_block_holds_four_particles_per_cell(seeding):
-    x = seeding.points(BLOCK, ORIGIN, DX)
+    x = seeding.fill(BLOCK, ORIGIN, DX).x
     assert len(x) == 80_000
     assert BLOCK.contains(x).all()
     cells = np.floor(x / DX).astype(int)
@@ -40,26 +40,26 @@ def test_block_holds_four_particles_per_cell(seeding):
 @every_seeding
 @pytest.mark.parametrize("width, removed", [(0.25e-3, 42), (0.5e-3, 128), (1.0e-3, 212), (1.5e-3, 382), (2.0e-3, 468)])
 def test_slit_at_45_degrees_removes_the_published_number_of_particles(seeding, width, removed):
-    assert len(seeding.points(cut(slit(width)), ORIGIN, DX)) == 80_000 - removed
+    assert len(seeding.fill(cut(slit(width)), ORIGIN, DX).x) == 80_000 - removed
 
 
 @pytest.mark.parametrize("spacing, count", [(0.5e-3, 31_428), (0.25e-3, 125_676)])
 def test_disc_counts_lattice_points_of_a_circle(spacing, count):
     disc = Disc(centre=(0.05, 0.05), radius=0.05)
-    assert len(Lattice().points(disc, ORIGIN, 2.0 * spacing)) == count
+    assert len(Lattice().fill(disc, ORIGIN, 2.0 * spacing).x) == count
 
 
 def test_lattice_sits_at_the_centres_of_sub_cells_in_2d_and_3d():
-    x = Lattice(particles_per_axis=3).points(Box(lower=(0.0,) * 3, upper=(2.0, 1.0, 1.0)), np.zeros(3), 1.0)
+    x = Lattice(particles_per_axis=3).fill(Box(lower=(0.0,) * 3, upper=(2.0, 1.0, 1.0)), np.zeros(3), 1.0).x
     assert len(x) == 54
     np.testing.assert_allclose(np.unique(x[:, 0].round(9)), (np.arange(6) + 0.5) / 3.0, atol=1e-9)
-    shifted = Lattice().points(Box(lower=(0.1, 0.1), upper=(1.1, 1.1)), np.array([0.1, -0.9]), 0.5)
+    shifted = Lattice().fill(Box(lower=(0.1, 0.1), upper=(1.1, 1.1)), np.array([0.1, -0.9]), 0.5).x
     np.testing.assert_allclose(np.unique(shifted.round(9)), 0.1 + (np.arange(4) + 0.5) / 4.0, atol=1e-9)
 
 
 def test_jitter_is_fixed_by_its_seed_and_its_count_by_none():
     region = cut(slit(1.0e-3))
-    runs = [Jittered(seed=seed).points(region, ORIGIN, DX) for seed in (1, 1, 2)]
+    runs = [Jittered(seed=seed).fill(region, ORIGIN, DX).x for seed in (1, 1, 2)]
     np.testing.assert_array_equal(runs[0], runs[1])
     assert runs[0].shape == runs[2].shape
     assert np.mean(np.abs(runs[0] - runs[2]).max(axis=1) > 1e-9) > 0.99
@@ -68,7 +68,7 @@ def test_jitter_is_fixed_by_its_seed_and_its_count_by_none():
 @pytest.mark.parametrize("amount", [0.0, 0.1, 0.49])
 def test_jitter_moves_every_particle_by_at_most_its_amount_and_fills_it(amount):
     region = cut(slit(1.0e-3))
-    lattice, moved = Lattice().points(region, ORIGIN, DX), Jittered(amount=amount).points(region, ORIGIN, DX)
+    lattice, moved = Lattice().fill(region, ORIGIN, DX).x, Jittered(amount=amount).fill(region, ORIGIN, DX).x
     share = np.abs(moved - lattice) / (0.5 * DX)
     assert share.max() <= amount + 1e-9
     assert share.max() >= 0.99 * amount
@@ -78,7 +78,7 @@ def test_jitter_moves_every_particle_by_at_most_its_amount_and_fills_it(amount):
 @pytest.mark.parametrize("angle", [0.0, 30.0, 45.0, 90.0])
 def test_jitter_never_enters_a_slit_nor_leaves_the_body(angle):
     flaw = slit(1.0e-3, angle)
-    x = Jittered(amount=0.49).points(cut(flaw), ORIGIN, DX)
+    x = Jittered(amount=0.49).fill(cut(flaw), ORIGIN, DX).x
     assert not flaw.contains(x).any()
     assert BLOCK.contains(x).all()
 
@@ -125,7 +125,8 @@ def test_narrow_slit_is_refused_with_a_width_that_passes(flaw, shape, seeding):
 @pytest.mark.parametrize("angle", [0.0, 20.0, 45.0])
 def test_bridge_is_the_mass_that_a_plain_loop_finds_on_shared_nodes(shape, angle):
     flaw, body = slit(1.0e-3, angle), Box(lower=(0.015, 0.04), upper=(0.035, 0.06))
-    x = Lattice().points(Difference(whole=body, removed=(flaw,)), ORIGIN, DX)
+    seeds = Lattice().fill(Difference(whole=body, removed=(flaw,)), ORIGIN, DX)
+    x = seeds.x
     side = flaw.frame(x)[:, 1] > 0.0
     nodes = np.stack(np.meshgrid(np.arange(120), np.arange(140), indexing="ij"), axis=-1) * DX
     reach = 0.5 * shape.width * DX
@@ -135,7 +136,7 @@ def test_bridge_is_the_mass_that_a_plain_loop_finds_on_shared_nodes(shape, angle
         if along < 0.5 * flaw.length - np.sqrt(2.0) * reach and across < 2.0e-3:
             w = np.prod([shape_function(shape)((x[:, d] - node[d]) / DX)[0] for d in range(2)], axis=0)
             worst = max(worst, min(w[side].sum(), w[~side].sum()) / 4.0)
-    assert slit_bridge(x, flaw, shape, 2, DX, ORIGIN) == pytest.approx(worst, abs=1e-12)
+    assert slit_bridge(seeds, flaw, shape, DX, ORIGIN) == pytest.approx(worst, abs=1e-12)
 
 
 def test_slits_are_found_however_nested():

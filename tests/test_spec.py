@@ -151,7 +151,7 @@ def test_refusal_names_field_value_and_range(field, build):
 
 
 def test_example_itself_is_accepted():
-    assert make().dim == 2 and len(make().particles()[0]) == 80_000
+    assert make().dim == 2 and len(make().particles()[0].x) == 80_000
 
 
 @pytest.mark.parametrize("dt", [1.91e-5, 1.9103e-5])
@@ -339,4 +339,5 @@ def test_file_that_holds_no_scene_is_refused(tmp_path, text):
 def test_positions_of_a_shipped_scene_do_not_change_by_recording():
     scene = load_scene(SHIPPED[0], quick=True)
     for one, two in zip(scene.particles(), through_json(scene).particles(), strict=True):
-        np.testing.assert_array_equal(one, two)
+        np.testing.assert_array_equal(one.x, two.x)
+        np.testing.assert_array_equal(one.volume, two.volume)

@@ -14,6 +14,7 @@ from rsmpm_ti.boundaries import Wall
 from rsmpm_ti.kernels import clear_nodes
 from rsmpm_ti.laws import BulkViscosity, Hooke, NoViscosity, Rock, Unbreakable
 from rsmpm_ti.regions import Box
+from rsmpm_ti.seeding import Seeds
 from rsmpm_ti.shape import Gimp, Linear, QuadraticBSpline
 from rsmpm_ti.sorting import sort_particles
 from rsmpm_ti.spec import Body, Domain, Loading, Scene, Schedule
@@ -86,7 +87,7 @@ def put(sim: Simulation, state: SimpleNamespace) -> None:
 
 
 def simulation(scene: Scene, real=ti.f64) -> Simulation:
-    return Simulation(scene, [np.zeros((COUNT, scene.dim))], real)
+    return Simulation(scene, [Seeds(np.zeros((COUNT, scene.dim)), np.zeros(COUNT))], real)
 
 
 def shared(simulations: dict, scene: Scene) -> Simulation:
@@ -110,7 +111,7 @@ def compare_step(scene: Scene, sim: Simulation) -> None:
     state = cloud(scene, sim)
     reference, dt, eps = Reference(sim, state), scene.dt, epsilon(sim.real)
     clear_nodes(sim)
-    scatter_all(sim, True, True)
+    scatter_all(sim, True, True, 0.0)
     size = -1, scene.dim
     close(sim.nodes.mass.to_numpy().ravel(), reference.mass, eps, 100)
     close(sim.nodes.v.to_numpy().reshape(size), reference.momentum(), eps, 100)
@@ -207,7 +208,7 @@ def test_strayed_particles_reach_the_same_nodes_as_after_sorting_again(simulatio
     found = []
     for _ in range(2):
         clear_nodes(sim)
-        scatter_all(sim, True, True)
+        scatter_all(sim, True, True, 0.0)
         found.append([f.to_numpy() for f in (sim.nodes.mass, sim.nodes.v, sim.nodes.f)])
         sort_particles(sim)
     assert found[0][0].sum() == pytest.approx(COUNT * sim.density * (0.5 * DX) ** 2, rel=1e-12)

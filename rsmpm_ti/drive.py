@@ -1,0 +1,41 @@
+"""A scene in motion: steps in chunks that are safe for the stripes, with a look at the particles after each."""
+
+import math
+
+from rsmpm_ti.measure import survey
+from rsmpm_ti.observe import guard
+from rsmpm_ti.sorting import sort_particles
+from rsmpm_ti.spec import Scene
+from rsmpm_ti.state import Simulation
+from rsmpm_ti.stepper import Clock
+
+STRAY_SHARE = 0.02
+"""Share of particles outside the cell they were sorted into above which they are sorted again."""
+
+SAFE_CELLS = 0.4
+"""Between two looks at the particles none may move further than this many cells, or stripes could meet."""
+
+
+class Drive:
+    """Particles, clock and the latest survey of one scene. Taichi must have been started."""
+
+    def __init__(self, scene: Scene, seeds, real, gpu: bool = False):
+        """seeds: `scene.particles()`; real: ti.f64 or ti.f32."""
+        self.sim = Simulation(scene, seeds, real, gpu)
+        sort_particles(self.sim)
+        self.clock = Clock(self.sim)
+        self.survey = survey(self.sim)
+
+    def advance(self, steps: int) -> None:
+        """Take steps, fewer if the scene ends before. Raises UnstableRun when a particle is no longer rock."""
+        remaining = min(steps, self.clock.total - self.clock.step)
+        while remaining > 0:
+            travel = max(self.survey.speed * self.clock.dt, 1e-30)
+            chunk = min(remaining, max(1, math.floor(SAFE_CELLS * self.sim.grid.dx / travel)))
+            self.clock.advance(chunk)
+            remaining -= chunk
+            self.survey = survey(self.sim)
+            guard(self.sim, self.clock, self.survey)
+            # stripes bear a stray of one row: half a cell beyond it and SAFE_CELLS more is still less than that
+            if self.survey.far_strays or self.survey.strays > STRAY_SHARE * self.sim.particles.count:
+                sort_particles(self.sim)

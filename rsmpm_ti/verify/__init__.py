@@ -1,0 +1,1 @@
+"""Independent truth to hold runs against: finite-element fields of slit specimens."""
