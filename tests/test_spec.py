@@ -274,7 +274,7 @@ def test_unknown_type_is_refused(kind):
 
 def test_unknown_missing_and_wrong_fields_are_refused_by_place():
     plain = to_plain(make())
-    assert "scene.rock.elasticity: Hooke has no field ['G']; it has ['E', 'nu']" in refusal(
+    assert "scene.rock.elasticity: Hooke has no field ['G']; it has ['E', 'nu', 'plane_stress']" in refusal(
         lambda: from_plain({**plain, "rock": {**plain["rock"], "elasticity": {"type": "Hooke", "E": 1.0, "G": 1.0}}})
     )
     assert "scene.domain" in refusal(lambda: from_plain({**plain, "domain": {"type": "Domain", "dx": 1.0}}))

@@ -1,1 +1,1 @@
-"""Independent truth to hold runs against: finite-element fields of slit specimens."""
+"""`python -m rsmpm_ti.verify`: the solver against exact solutions, finite elements and published data."""
