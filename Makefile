@@ -27,7 +27,7 @@ cube disc intact: $(STAMP)
 	$(RUN) -m rsmpm_ti.scene $@ $(ARGS)
 
 test: $(STAMP)
-	$(RUN) -m pytest -n 2 --dist loadfile $(ARGS)
+	$(RUN) -m pytest -n 2 --dist loadgroup $(ARGS)
 
 validation: $(STAMP)
 	$(RUN) -m pytest -m validation $(ARGS)

@@ -13,12 +13,21 @@ PACKAGE = ROOT / "rsmpm_ti"
 LAYERS = """
     errors units snapshot tensors regions seeding shape transfer laws boundaries starts spec traversal state sorting
     material kernels measure stepper observe drive cracks summary output record paint frames library run scene verify
-    yardstick bench
+    bench
 """.split()
 """A module imports only from modules to the left of its own name."""
 
 PAINT_LAYERS = "view layout chrome raster ggui figure summary movie".split()
 """The same within `rsmpm_ti/paint/`, which sees nothing else of the package than PAINT_SEES."""
+
+VERIFY_LAYERS = """
+    case drives fe_field meshing finite_elements closed_forms exact_motion relaxation specimen cell slit_field
+    first_failure waves bodies manufactured disc hole envelope catalogue report running __main__
+""".split()
+BENCH_LAYERS = "settings yardstick speed measures front error __main__".split()
+"""The same within `rsmpm_ti/verify/` and `rsmpm_ti/bench/`, which see every layer above their package's name."""
+
+ROOMS = {"paint": PAINT_LAYERS, "verify": VERIFY_LAYERS, "bench": BENCH_LAYERS}
 
 PAINT_SEES = {"errors", "units", "snapshot"}
 WITHOUT_TAICHI = ["errors", "units", "snapshot", "regions", "seeding", "output"]
@@ -80,23 +89,33 @@ def own_module(name: str) -> str | None:
 def allowed_imports(module: str) -> set[str]:
     """Names, without the leading "rsmpm_ti.", that a listed module may import from this package."""
     painters = [f"paint.{name}" for name in PAINT_LAYERS]
+    verifiers = [f"verify.{name}" for name in VERIFY_LAYERS]
+    benches = [f"bench.{name}" for name in BENCH_LAYERS]
     if module == "":  # rsmpm_ti/__init__.py hands out the surface
         return {"library", "run"}
     if module == "paint":
         return PAINT_SEES | set(painters)
     if module in painters:
         return PAINT_SEES | set(painters[: painters.index(module)])
-    above = set(LAYERS[: LAYERS.index(module)])
-    return above | set(painters) if "paint" in above else above
+    above = set(LAYERS[: LAYERS.index(module.partition(".")[0])])
+    if "paint" in above:
+        above |= set(painters)
+    if "verify" in above:
+        above |= set(verifiers)
+    for rooms in (verifiers, benches):
+        if module in rooms:
+            above |= set(rooms[: rooms.index(module)]) | {""}
+    return above
 
 
 @each(PACKAGE_FILES)
 def test_module_imports_only_from_layers_above(path):
     module = dotted(path).partition(".")[2]
-    if module.startswith("paint."):
-        assert module.removeprefix("paint.") in PAINT_LAYERS, (
-            f"{relative(path)} is in no layer: add it to PAINT_LAYERS in {relative(Path(__file__))}, to the right of "
-            "every painter it imports and to the left of every painter that imports it"
+    package, _, name = module.partition(".")
+    if name:
+        assert name in ROOMS[package], (
+            f"{relative(path)} is in no layer: add it to {package.upper()}_LAYERS in {relative(Path(__file__))}, to "
+            "the right of every module it imports and to the left of every module that imports it"
         )
     elif module:
         assert module in LAYERS, (
@@ -114,8 +133,9 @@ def test_module_imports_only_from_layers_above(path):
 def test_layers_name_no_module_that_is_gone():
     if "rsmpm_ti.scene" not in MODULES:
         pytest.skip("the last layer, rsmpm_ti/scene.py, is not written yet")
-    listed = {f"rsmpm_ti.{name}" for name in LAYERS} | {f"rsmpm_ti.paint.{name}" for name in PAINT_LAYERS}
-    assert not listed - set(MODULES), "LAYERS or PAINT_LAYERS names modules that do not exist"
+    listed = {f"rsmpm_ti.{name}" for name in LAYERS}
+    listed |= {f"rsmpm_ti.{package}.{name}" for package, names in ROOMS.items() for name in names}
+    assert listed - set(MODULES) == set(), "LAYERS or one of ROOMS names modules that do not exist"
 
 
 @each(ALL_FILES)

@@ -1,6 +1,8 @@
 """Every verification case by name."""
 
-from rsmpm_ti.verify import specimen
+from rsmpm_ti.verify import cell, first_failure, slit_field, specimen
 from rsmpm_ti.verify.case import Case
 
-CASES: dict[str, Case] = {case.name: case for module in (specimen,) for case in module.CASES}
+MODULES = (specimen, cell, slit_field, first_failure)
+
+CASES: dict[str, Case] = {case.name: case for module in MODULES for case in module.CASES}

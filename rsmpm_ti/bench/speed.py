@@ -1,8 +1,6 @@
-"""python -m rsmpm_ti.bench speed: this code against the yardstick, interleaved in one run, as ratios."""
+"""`bench speed`: this code against the yardstick, interleaved in one run, as ratios."""
 
-import argparse
 import statistics
-import sys
 import time
 from dataclasses import replace
 
@@ -30,7 +28,7 @@ def solver(shape: str, order: str):
 
 
 def yardstick():
-    from rsmpm_ti.yardstick import Naive
+    from rsmpm_ti.bench.yardstick import Naive
 
     naive = Naive()
 
@@ -69,19 +67,3 @@ def speed(threads: int, rounds: int, steps: int, order: str) -> str:
 
 def _spread(values: list[float]) -> str:
     return f"{min(values):.2f} / {statistics.median(values):.2f} / {max(values):.2f}"
-
-
-def main(arguments: list[str] | None = None) -> int:
-    p = argparse.ArgumentParser(prog="python -m rsmpm_ti.bench", description="Measure, always as ratios in one run.")
-    p.add_argument("what", choices=("speed",))
-    p.add_argument("--threads", type=int, default=1)
-    p.add_argument("--rounds", type=int, default=7)
-    p.add_argument("--steps", type=int, default=40)
-    p.add_argument("--order", choices=("musl", "usf"), default="musl")
-    options = p.parse_args(arguments)
-    print(speed(options.threads, options.rounds, options.steps, options.order))
-    return 0
-
-
-if __name__ == "__main__":
-    sys.exit(main())

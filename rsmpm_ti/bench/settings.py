@@ -1,0 +1,61 @@
+"""What is swept: numerical settings, and which combinations of them each case runs."""
+
+import itertools
+from dataclasses import dataclass, replace
+
+from rsmpm_ti.shape import Gimp, Linear, QuadraticBSpline
+from rsmpm_ti.transfer import Apic, PicFlip
+
+SHAPES = ("linear", "gimp", "bspline")
+TRANSFERS = {"flip": PicFlip(), "apic": Apic()}
+ORDERS = ("musl", "usf", "usl")
+CELLS = {"slit": (100, 200, 400), "bar": (16, 32, 64), "vortex": (16, 32, 64)}
+"""Resolutions: cells over the specimen's height, per wavelength, and per unit radius."""
+
+
+@dataclass(frozen=True)
+class Setting:
+    """One way to compute one case. `cells`: see CELLS; `per_axis`: particles per axis of a cell."""
+
+    case: str
+    cells: int
+    shape: str = "bspline"
+    transfer: str = "flip"
+    order: str = "musl"
+    per_axis: int = 2
+    precision: str = "f64"
+    time_scale: float = 8.0
+    fitted: bool = True
+
+    @property
+    def functions(self):
+        """The shape function object."""
+        kinds = {"linear": Linear(), "gimp": Gimp(half_width=0.5 / self.per_axis), "bspline": QuadraticBSpline()}
+        return kinds[self.shape]
+
+    @property
+    def scheme(self) -> str:
+        """Everything but the case and its resolution, for tables."""
+        edges = "" if self.fitted or self.case != "slit" else ", stairs"
+        scale = f", time_scale {self.time_scale:g}" if self.case == "slit" else ""
+        per_cell = f"{self.per_axis}x{self.per_axis}"
+        return f"{self.shape}, {self.transfer}, {self.order}, {per_cell}, {self.precision}{edges}{scale}"
+
+
+def sweep(case: str, finest: bool = True) -> list[Setting]:
+    """Every scheme at the coarser resolutions, the two orders worth it at the finest, then one change at a time."""
+    *coarse, fine = CELLS[case]
+    settings = [
+        Setting(case, cells, shape, transfer, order)
+        for cells, shape, transfer, order in itertools.product(coarse, SHAPES, TRANSFERS, ORDERS)
+        if not (order == "usl" and shape == "linear")  # refused by the scene: its stable step tends to 0
+    ]
+    if finest:
+        settings += [Setting(case, fine, shape) for shape in SHAPES]
+    for cells, shape in itertools.product(coarse, SHAPES):
+        base = Setting(case, cells, shape)
+        settings += [replace(base, per_axis=3), replace(base, precision="f32")]
+        if case == "slit":
+            settings += [replace(base, fitted=False)]
+            settings += [replace(base, time_scale=scale) for scale in (4.0, 16.0, 32.0)]
+    return settings
