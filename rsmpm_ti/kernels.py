@@ -1,4 +1,4 @@
-"""The only kernels that see particles and nodes. They know no dimension, law, scheme or shape function by name.
+"""The only kernels that see particles and nodes together. They know no dimension, law or scheme by name.
 
 Indices: p particle, i node, ip pair. Every pass over particles goes by spans (see traversal.py): within one, a run of
 particles with the same base node keeps its node values in locals, loaded or added to the grid once per run.
@@ -9,9 +9,6 @@ import taichi as ti
 from rsmpm_ti.material import check_failure, update_stress
 from rsmpm_ti.shape import fold_at_walls, tensor_gradient, tensor_weight
 from rsmpm_ti.tensors import in_plane_times, isotropic
-
-SMALL_MASS = 1e-12
-"""Nodes lighter than this share of a full cell hold nothing: their velocity would be round-off."""
 
 
 @ti.func
@@ -60,14 +57,6 @@ def scatter(sim: ti.template(), field: ti.template(), base, local: ti.template()
 def scatter_mass(sim: ti.template(), base, local: ti.template()):
     for k, offset in ti.static(enumerate(sim.stencil)):
         sim.traversal.add(sim.nodes.mass, base + ti.Vector(offset), local[k])
-
-
-@ti.kernel
-def clear_nodes(sim: ti.template()):
-    for i in ti.grouped(sim.nodes.mass):
-        sim.nodes.mass[i] = 0.0
-        sim.nodes.v[i] = ti.Vector.zero(float, sim.dim)
-        sim.nodes.f[i] = ti.Vector.zero(float, sim.dim)
 
 
 @ti.func
@@ -154,58 +143,6 @@ def p2g(sim: ti.template(), momentum: ti.template(), force: ti.template(), colou
         start, stop = sim.traversal.span_of_colour(t, colour)
         if stop > start:
             p2g_span(sim, start, stop, momentum, force, time)
-
-
-@ti.func
-def hold(sim: ti.template(), i, v, factor):
-    """Node velocity after every boundary that holds the node."""
-    held = v
-    for boundary in ti.static(sim.boundaries):
-        if boundary.holds(sim.grid.position(i), sim.grid.dx):
-            held = boundary.project(held, factor)
-    return held
-
-
-@ti.kernel
-def momentum_to_velocity(sim: ti.template(), field: ti.template(), factor: float):
-    """v_i = (mv)_i / m_i and boundaries, for momentum that is mapped apart from force (usf, and musl's second map)."""
-    for i in ti.grouped(sim.nodes.mass):
-        m = sim.nodes.mass[i]
-        v = ti.Vector.zero(float, sim.dim)
-        if m > SMALL_MASS * sim.density * sim.grid.dx**sim.dim:
-            v = hold(sim, i, field[i] / m, factor)
-        field[i] = v
-
-
-@ti.kernel
-def update_nodes(sim: ti.template(), divide: ti.template(), dt: float, factor: float):
-    """v_i <- v_i + dt (f_i/m_i + b), then boundaries, whose impulses and work go to the ledger.
-
-    `divide`: v still holds momentum. Afterwards f holds the velocity change of the step.
-    """
-    nodes, ledger = sim.nodes, sim.ledger
-    for i in ti.grouped(nodes.mass):
-        m = nodes.mass[i]
-        v, dv = ti.Vector.zero(float, sim.dim), ti.Vector.zero(float, sim.dim)
-        if m > SMALL_MASS * sim.density * sim.grid.dx**sim.dim:
-            v_old = nodes.v[i]
-            if ti.static(divide):
-                v_old /= m
-            v = v_old + dt * nodes.f[i] / m
-            if ti.static(sim.heavy):
-                v += dt * ti.Vector(sim.acceleration)
-            for b, boundary in ti.static(enumerate(sim.boundaries)):
-                if boundary.holds(sim.grid.position(i), sim.grid.dx):
-                    held = boundary.project(v, factor)
-                    impulse = ti.cast(m * (held - v), ti.f64)
-                    ledger.impulse[b] += impulse
-                    ledger.work[b] += impulse.dot(ti.cast(held, ti.f64))
-                    v = held
-            dv = v - v_old
-        nodes.v[i] = v
-        nodes.f[i] = dv
-        if ti.static(nodes.remap):
-            nodes.w[i] = ti.Vector.zero(float, sim.dim)
 
 
 @ti.func

@@ -256,9 +256,7 @@ class Scene:
             sign = f"of the sign of the platens' strain rate {loading.strain_rate:.6g} 1/s"
             raise refuse("schedule.strain_end", self.schedule.strain_end, sign)
         if isinstance(loading.start, Press) and self.schedule.strain_end is not None:
-            raise SceneError(
-                "start = Press stops the platens itself: give t_end, hold included, no strain_end"
-            )
+            raise SceneError("start = Press stops the platens itself: give t_end, hold included, no strain_end")
         if isinstance(loading.start, (Ramp, Press)) and loading.platens:
             transits = loading.start.time * self.wave_speed / loading.height
             if transits < 5.0:

@@ -2,7 +2,8 @@
 
 import math
 
-from rsmpm_ti.kernels import clear_nodes, g2p, g2p_remap, momentum_to_velocity, p2g, update_nodes
+from rsmpm_ti.kernels import g2p, g2p_remap, p2g
+from rsmpm_ti.node_update import clear_nodes, momentum_to_velocity, update_nodes
 from rsmpm_ti.state import Simulation
 
 VELOCITY_POSITION = (True, True, False)

@@ -12,8 +12,8 @@ PACKAGE = ROOT / "rsmpm_ti"
 
 LAYERS = """
     errors units snapshot tensors regions seeding shape transfer laws boundaries starts spec traversal state sorting
-    material kernels measure stepper observe drive cracks summary output record paint frames library run scene verify
-    bench
+    material node_update kernels measure stepper observe drive cracks summary output record paint frames library run
+    scene verify bench
 """.split()
 """A module imports only from modules to the left of its own name."""
 

@@ -11,8 +11,8 @@ from plain_mpm import Reference
 from rsmpm_ti import shape as shapes
 from rsmpm_ti import transfer as transfers
 from rsmpm_ti.boundaries import Wall
-from rsmpm_ti.kernels import clear_nodes
 from rsmpm_ti.laws import BulkViscosity, Hooke, NoViscosity, Rock, Unbreakable
+from rsmpm_ti.node_update import clear_nodes
 from rsmpm_ti.regions import Box
 from rsmpm_ti.seeding import Seeds
 from rsmpm_ti.shape import Gimp, Linear, QuadraticBSpline
