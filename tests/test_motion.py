@@ -1,9 +1,11 @@
 """Whole-body motion: free fall, spin and collision, where mechanics leaves no freedom."""
 
 import math
+from dataclasses import dataclass
 
 import numpy as np
 import pytest
+import taichi as ti
 
 from rsmpm_ti.laws import Hooke, MohrCoulomb, NoViscosity, Rock, Unbreakable
 from rsmpm_ti.regions import Box, Disc
@@ -52,6 +54,33 @@ def test_free_fall_follows_symplectic_euler(order, shape):
     work = result.history["work_J"][-1]
     kinetic = result.history["energy_kinetic_J"][-1] - 0.5 * 2600.0 * 1e-4 * v0**2
     assert work == pytest.approx(kinetic, rel=1e-9)  # all of gravity's work becomes kinetic energy
+
+
+@ti.data_oriented
+@dataclass(frozen=True, kw_only=True)
+class Swing:
+    """b = (g cos(w t), k X_x): uniform but changing along x, and growing with the initial place along y."""
+
+    g: float
+    w: float
+    k: float
+
+    @ti.func
+    def acceleration(self, X, t):
+        return ti.Vector([self.g * ti.cos(self.w * t), self.k * X[0]])
+
+
+def test_force_field_depends_on_time_and_place_and_its_work_is_booked():
+    swing = Swing(g=1e5, w=2.0 * math.pi / 8e-5, k=1e6)
+    scene = block(loading=Loading(force_field=swing), schedule=Schedule(t_end=4e-5, cfl=0.4, rows=4))
+    result = simulate(scene)
+    # v_n = dt sum b(t_k), k = 0 .. n-1, for the whole body; along y the mean place is x = 15 mm
+    times = scene.dt * np.arange(scene.steps)
+    expected = scene.dt * np.array([np.sum(swing.g * np.cos(swing.w * times)), swing.k * 0.015 * scene.steps])
+    np.testing.assert_allclose(result.snapshot.velocity.mean(axis=0), expected, rtol=1e-9)
+    energy = result.history["energy_kinetic_J"][-1] + result.history["energy_elastic_J"][-1]
+    # the elastic vibration that k X_x excites is integrated with an error of (w dt)^2
+    assert result.history["work_J"][-1] == pytest.approx(energy, rel=1e-3)
 
 
 def test_mass_scaling_leaves_the_weight_of_a_body_unchanged():

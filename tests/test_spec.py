@@ -18,7 +18,7 @@ from rsmpm_ti.record import KNOWN, from_plain, read_scene, to_plain
 from rsmpm_ti.regions import Box, Difference, Disc, Slit, Union
 from rsmpm_ti.seeding import Lattice
 from rsmpm_ti.shape import Gimp, Linear, QuadraticBSpline
-from rsmpm_ti.spec import Affine, AtRest, Body, Domain, Loading, Output, Ramp, Scene, Schedule
+from rsmpm_ti.spec import Affine, AtRest, Body, Domain, Loading, Output, Press, Ramp, Scene, Schedule
 from rsmpm_ti.transfer import Apic, PicFlip
 
 NAN, INF = float("nan"), float("inf")
@@ -119,6 +119,9 @@ BY_FIELD = [
     *[("schedule.rows", lambda v=v: make(schedule_rows=v)) for v in (0, -1, 1.5, 10**7, True)],
     *[("start.time", lambda v=v: Ramp(time=v)) for v in (0.0, -1e-3, NAN)],
     ("start.time", lambda: make(loading_start=Ramp(time=4.9 * 0.1 / SPEED))),
+    ("start.time", lambda: make(loading_start=Press(time=4.9 * 0.1 / SPEED), schedule={"t_end": 1e-3})),
+    ("start.time", lambda: Press(time=-1.0)),
+    ("loading.force_field", lambda: Loading(force_field=9.81)),
     ("scene.order", lambda: make(order="leapfrog")),
     ("shape.half_width", lambda: make(shape=Gimp(half_width=0.5))),
     ("shape.half_width", lambda: Gimp(half_width=0.0)),
@@ -213,6 +216,7 @@ def test_glued_slit_is_refused_when_particles_are_made():
         (lambda: make(loading_boundaries=()), "two platens that face each other"),
         (lambda: make(loading_boundaries=platens(side="lower")), "two platens that face each other"),
         (lambda: make(schedule={"t_end": 1e-4}, loading={"start": Affine()}), "two platens that face each other"),
+        (lambda: make(loading_start=Press(time=1e-3)), "give t_end, hold included"),
         (lambda: make(loading_width=None), "loading.width is missing"),
     ],
 )
@@ -232,6 +236,14 @@ def test_derived_numbers():
     ramp = make(loading_start=Ramp(time=1e-3))
     assert ramp.t_end == pytest.approx(1e-3 / 0.05 + 0.5e-3)
     assert isinstance(scene.elastic().rock.criterion, Unbreakable)
+
+
+@pytest.mark.parametrize("start, distance", [(Ramp(time=2.0), 9.0), (Press(time=2.0), 1.0), (Affine(), 10.0)], ids=str)
+def test_platens_travel_what_the_start_promises(start, distance):
+    """In 10 s at full speed 1: a ramp and a press of 2 s cover half of what full speed would in their time."""
+    times = (np.arange(100_000) + 0.5) * 1e-4
+    assert sum(map(start.factor, times)) * 1e-4 == pytest.approx(distance, rel=1e-6)
+    assert start.factor(1.0) == pytest.approx(0.5 if isinstance(start, Ramp) else 1.0)
 
 
 def through_json(scene: Scene) -> Scene:
