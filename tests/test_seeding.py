@@ -82,8 +82,8 @@ def test_fitted_edges_keep_the_area_of_what_is_cut(angle):
     area = 0.05 * 0.1 - 1.3e-3 * 15e-3
     seeds = Lattice(fitted=True).fill(region, ORIGIN, DX)
     assert seeds.volume.sum() == pytest.approx(area, abs=spacing / 32 * 2 * 16.3e-3)
-    assert seeds.volume.max() == pytest.approx(spacing**2, rel=1e-12)
-    assert seeds.volume.min() >= 0.05 * spacing**2 * (1 - 1e-9)
+    assert seeds.volume.max() < 1.6 * spacing**2  # a whole sub-cell with two slivers of 0.3 at most
+    assert seeds.volume.min() >= 0.3 * spacing**2 * (1 - 1e-9)
     assert region.contains(seeds.x).all()
 
 
@@ -105,11 +105,11 @@ def test_fitted_edges_of_a_lattice_box_change_nothing():
 def test_fitted_disc_has_the_area_and_the_second_moment_of_a_disc():
     radius, spacing = 0.05, 0.5e-3
     seeds = Lattice(fitted=True).fill(Disc(centre=(0.05, 0.05), radius=radius), ORIGIN, 2.0 * spacing)
-    # slivers below 5 % of a sub-cell get no particle: about 0.2 % of a sub-cell along the rim, 3e-5; stairs err by 5e-4
-    assert seeds.volume.sum() == pytest.approx(np.pi * radius**2, rel=5e-5)
+    # samples err by at most 1/32 of a sub-cell, at random along the rim: 1e-5; stairs err by 5e-4
+    assert seeds.volume.sum() == pytest.approx(np.pi * radius**2, rel=2e-5)
     moment = np.sum(seeds.volume * np.sum((seeds.x - 0.05) ** 2, axis=1))
-    # slivers at the rim count twice, and particles have no moment of their own (spacing^2/6 each): 1e-4 in all
-    assert moment == pytest.approx(0.5 * np.pi * radius**4, rel=2e-4)
+    # particles have no moment of their own, spacing^2/6 each: 3.3e-5, more where slivers were joined
+    assert moment == pytest.approx(0.5 * np.pi * radius**4, rel=1e-4)
 
 
 @pytest.mark.parametrize("angle", [0.0, 30.0, 45.0, 90.0])

@@ -13,7 +13,7 @@ from rsmpm_ti.verify.running import run_cases
 def parser() -> argparse.ArgumentParser:
     p = argparse.ArgumentParser(
         prog="python -m rsmpm_ti.verify",
-        description="Hold the solver against exact solutions, finite elements and published data; exit status 1 on a miss.",
+        description="Hold the solver against exact solutions, finite elements and published data; status 1: a miss.",
     )
     p.add_argument("cases", nargs="*", metavar="CASE", help="names of cases; all of the tier by default")
     p.add_argument("--list", action="store_true", help="list the cases and stop")
