@@ -186,34 +186,6 @@ def test_unconfined_confined_and_free_sided_strains_give_their_moduli(elasticity
     np.testing.assert_allclose(found, expected, rtol=0.0, atol=1e-14 * E * e)
 
 
-def test_plane_stress_has_the_moduli_of_a_plate_and_no_stress_through_it():
-    """Free sides: E and nu. Held sides: E/(1 - nu^2). Shear: mu. Timoshenko & Goodier, art. 17."""
-    plate, e = Hooke(E=E, nu=NU, plane_stress=True), 1e-4
-    plane = np.array([[[-NU * e, 0.0], [0.0, e]], [[0.0, 0.0], [0.0, e]], [[0.0, e], [e, 0.0]]])
-    held = E / (1.0 - NU**2) * e
-    expected = [[0.0, E * e, 0.0, 0.0], [NU * held, held, 0.0, 0.0], [0.0, 0.0, 0.0, 2.0 * plate.mu * e]]
-    np.testing.assert_allclose(elastic(np.zeros((3, 4)), plane, 2, plate), expected, rtol=0.0, atol=1e-14 * E * e)
-    assert plate.p_wave_modulus == pytest.approx(E / (1.0 - NU**2), rel=1e-12)
-    assert (plate.uniaxial_modulus(2), plate.lateral_ratio(2)) == (E, NU)
-
-
-@pytest.mark.parametrize("plane_stress", [False, True])
-def test_volume_ratio_counts_the_thickness_and_returns_after_a_cycle(plane_stress):
-    """Small uniaxial strain e, free sides: plane strain e (1 - nu/(1 - nu)); plane stress e (1 - 2 nu)."""
-    law, e = Hooke(E=E, nu=NU, plane_stress=plane_stress), 1e-6
-    G = np.array([[[-law.lateral_ratio(2) * e, 0.0], [0.0, e]], [[0.5, 0.1], [0.0, 0.2]]])
-    rows = np.concatenate([G, np.linalg.inv(np.eye(2) + G) - np.eye(2)]).reshape(4, 4)
-
-    @ti.func
-    def ratio(a: ti.template(), p):
-        return ti.Vector([law.volume_ratio(matrix(a, p, 0, 2))])
-
-    found = on_rows(ratio, rows, 1)[:, 0]
-    expected = 1.0 - 2.0 * NU if plane_stress else 1.0 - NU / (1.0 - NU)
-    assert (found[0] - 1.0) / e == pytest.approx(expected, rel=1e-5)  # e^2 terms
-    np.testing.assert_allclose(found[:2] * found[2:], 1.0, rtol=1e-13)
-
-
 @both_dims
 @pytest.mark.parametrize("elasticity", variants(laws, "energy"), ids=name_of)
 def test_energy_is_half_of_stress_times_strain(elasticity, dim):

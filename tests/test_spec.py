@@ -238,14 +238,6 @@ def test_derived_numbers():
     assert isinstance(scene.elastic().rock.criterion, Unbreakable)
 
 
-@pytest.mark.parametrize("start, distance", [(Ramp(time=2.0), 9.0), (Press(time=2.0), 1.0), (Affine(), 10.0)], ids=str)
-def test_platens_travel_what_the_start_promises(start, distance):
-    """In 10 s at full speed 1: a ramp and a press of 2 s cover half of what full speed would in their time."""
-    times = (np.arange(100_000) + 0.5) * 1e-4
-    assert sum(map(start.factor, times)) * 1e-4 == pytest.approx(distance, rel=1e-6)
-    assert start.factor(1.0) == pytest.approx(0.5 if isinstance(start, Ramp) else 1.0)
-
-
 def through_json(scene: Scene) -> Scene:
     return from_plain(json.loads(json.dumps(to_plain(scene), allow_nan=False)))
 
