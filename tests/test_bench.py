@@ -12,7 +12,7 @@ from rsmpm_ti.bench.settings import CELLS, SHAPES, Setting, sweep
 
 
 def entry(wall: float, error: float, **changes):
-    return replace(Setting("bar", 16), **changes), Measure(error, wall, 100, 10)
+    return replace(Setting("bar", 16), **changes), Measure(error, wall, 1000)
 
 
 ENTRIES = [entry(1.0, 0.1), entry(2.0, 0.03, order="usf"), entry(3.0, 0.04, shape="gimp"), entry(4.0, 0.008, cells=32)]

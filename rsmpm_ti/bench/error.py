@@ -34,7 +34,7 @@ def run_sweep(cases: list[str], finest: bool, jobs: int, out: Path) -> list[Entr
     with open(out / CSV_NAME, "w", newline="", encoding="utf-8") as file:
         writer = csv.writer(file)
         names = [f.name for f in fields(Setting)]
-        writer.writerow([*names, "error", "wall_s", "particles", "steps", "particle_steps"])
+        writer.writerow([*names, "error", "wall_s", "particle_steps"])
         with multiprocessing.get_context("spawn").Pool(jobs, maxtasksperchild=8) as pool:
             for k, (setting, m, problem) in enumerate(pool.imap_unordered(_work, settings), 1):
                 head = f"{k}/{len(settings)} {setting.case} {setting.cells}: {setting.scheme}"
@@ -43,7 +43,7 @@ def run_sweep(cases: list[str], finest: bool, jobs: int, out: Path) -> list[Entr
                     continue
                 print(f"{head}: error {100 * m.error:.3g} %, {m.wall_s:.2f} s", flush=True)
                 row = [getattr(setting, name) for name in names]
-                cost = [f"{m.error:.6g}", f"{m.wall_s:.4g}", m.particles, m.steps, m.particles * m.steps]
+                cost = [f"{m.error:.6g}", f"{m.wall_s:.4g}", m.particle_steps]
                 writer.writerow([*row, *cost])
                 file.flush()
                 entries.append((setting, m))
@@ -57,7 +57,7 @@ def read_sweep(path: Path) -> list[Entry]:
     with open(path, newline="", encoding="utf-8") as file:
         for row in csv.DictReader(file):
             values = {name: row[name] == "True" if kind is bool else kind(row[name]) for name, kind in kinds.items()}
-            m = Measure(float(row["error"]), float(row["wall_s"]), int(row["particles"]), int(row["steps"]))
+            m = Measure(float(row["error"]), float(row["wall_s"]), int(row["particle_steps"]))
             entries.append((Setting(**values), m))
     return entries
 
@@ -68,7 +68,7 @@ def draw(path: Path, entries: list[Entry]) -> None:
     from matplotlib.lines import Line2D
 
     cases = list(dict.fromkeys(setting.case for setting, _ in entries))
-    costs = (("wall time [s]", lambda m: m.wall_s), ("particle-steps", lambda m: float(m.particles * m.steps)))
+    costs = (("wall time [s]", lambda m: m.wall_s), ("particle-steps", lambda m: float(m.particle_steps)))
     figure = Figure(figsize=(5.0 * len(cases), 8.5), dpi=110, layout="constrained")
     grid = figure.subplots(2, len(cases), squeeze=False)
     for column, case in enumerate(cases):

@@ -36,8 +36,7 @@ class Measure:
 
     error: float
     wall_s: float
-    particles: int
-    steps: int
+    particle_steps: int
 
 
 def measure(setting: Setting) -> Measure:
@@ -72,7 +71,7 @@ def slit(setting: Setting, real) -> Measure:
     field = load_field("slit_specimen_2mm")
     modulus = scene.rock.elasticity.uniaxial_modulus(2) * field.metadata["modulus_ratio"]["square"]
     error = field_error(scene, field, snapshot.x, snapshot.sigma, snapshot.volume, modulus * drive.clock.strain)
-    return Measure(error.rms, wall, drive.sim.particles.count, drive.clock.total)
+    return Measure(error.rms, wall, drive.sim.particles.count * drive.clock.total)
 
 
 def bar(setting: Setting, real) -> Measure:
@@ -113,7 +112,7 @@ def bar(setting: Setting, real) -> Measure:
     velocity, displacement = (mode @ f[:, 0] / norm for f in (snapshot.velocity, snapshot.displacement))
     # v is half a step behind x in every order: at the turning points chosen here that costs (omega dt)^2/8, no more
     error = abs(velocity + 1j * omega * displacement - np.exp(1j * omega * drive.clock.time))
-    return Measure(float(error), wall, particles.count, drive.clock.total)
+    return Measure(float(error), wall, particles.count * drive.clock.total)
 
 
 def vortex(setting: Setting, real) -> Measure:

@@ -54,8 +54,10 @@ def sweep(case: str, finest: bool = True) -> list[Setting]:
         settings += [Setting(case, fine, shape) for shape in SHAPES]
     for cells, shape in itertools.product(coarse, SHAPES):
         base = Setting(case, cells, shape)
-        settings += [replace(base, per_axis=3), replace(base, precision="f32")]
+        changes = [{"precision": "f32"}, {"per_axis": 3}]
         if case == "slit":
-            settings += [replace(base, fitted=False)]
-            settings += [replace(base, time_scale=scale) for scale in (4.0, 16.0, 32.0)]
+            changes += [{"time_scale": scale} for scale in (4.0, 16.0, 32.0)] + [{"fitted": False}]
+        # on the coarsest grid some of these would glue the slit's faces, which the scene refuses
+        glued = case == "slit" and cells == coarse[0]
+        settings += [replace(base, **c) for c in changes if not (glued and ("per_axis" in c or "fitted" in c))]
     return settings
