@@ -1,8 +1,22 @@
 """Every verification case by name."""
 
-from rsmpm_ti.verify import cell, disc, envelope, first_failure, hole, slit_field, specimen
+from rsmpm_ti.verify import (
+    bodies,
+    cell,
+    disc,
+    envelope,
+    first_failure,
+    hole,
+    manufactured,
+    relaxation,
+    slit_field,
+    specimen,
+    waves,
+)
 from rsmpm_ti.verify.case import Case
 
-MODULES = (specimen, envelope, cell, disc, hole, slit_field, first_failure)
+MODULES = (
+    waves, bodies, relaxation, manufactured, specimen, envelope, cell, disc, hole, slit_field, first_failure,
+)  # fmt: skip
 
 CASES: dict[str, Case] = {case.name: case for module in MODULES for case in module.CASES}
