@@ -121,7 +121,7 @@ def solve(scene: Scene, real=ti.f64) -> Errors:
 def _start(drive: Drive, motion) -> None:
     """Velocities of t = -dt/2: the solver's steps are a leapfrog, with velocities half a step before positions.
 
-    Those of t = 0 would be wrong by dt/2 times an acceleration, which vanishes at t = 0 in these two motions only.
+    Those of t = 0 would err by dt/2 times the acceleration at the start, which happens to be 0 in both motions.
     """
     particles, dt = drive.sim.particles, drive.clock.dt
     kind = np.float64 if drive.sim.real == ti.f64 else np.float32
