@@ -61,6 +61,10 @@ def test_error_sweep_of_one_small_case_writes_csv_and_picture(tmp_path, monkeypa
     assert (tmp_path / "speed_vs_error.png").stat().st_size > 10_000
     assert "| bar |" in capsys.readouterr().out
     draw(tmp_path / "again.png", list(entries.items()))
+    # another case is added to what is there
+    settings[:] = [Setting("vortex", 16, "linear")]
+    assert main(["error", "vortex", "--out", str(tmp_path), "--jobs", "1"]) == 0
+    assert set(dict(read_sweep(tmp_path / CSV_NAME))) == set(entries) | set(settings)
 
 
 def test_unknown_case_is_refused(capsys):

@@ -11,6 +11,8 @@ from rsmpm_ti.bench.measures import Measure, measure
 from rsmpm_ti.bench.settings import CELLS, SHAPES, Setting, sweep
 
 CSV_NAME, PICTURE_NAME = "speed_vs_error.csv", "speed_vs_error.png"
+NAMES = tuple(f.name for f in fields(Setting))
+
 TITLES = {
     "slit": "Slit specimen: rms error of sigma_1\nagainst finite elements",
     "bar": "Vibrating bar: error of the mode\nafter two periods",
@@ -28,13 +30,17 @@ def _work(setting: Setting) -> tuple[Setting, Measure | None, str]:
 
 
 def run_sweep(cases: list[str], finest: bool, jobs: int, out: Path) -> list[Entry]:
-    """Every setting on one thread in a process of its own, `jobs` at a time; rows are written as they come."""
+    """Every setting on one thread in a process of its own, `jobs` at a time; rows are written as they come.
+
+    Rows of other cases that an earlier sweep left in `out` stay.
+    """
     settings = [setting for case in cases for setting in sweep(case, finest)]
-    entries = []
-    with open(out / CSV_NAME, "w", newline="", encoding="utf-8") as file:
+    path = out / CSV_NAME
+    entries = [entry for entry in read_sweep(path) if entry[0].case not in cases] if path.exists() else []
+    with open(path, "w", newline="", encoding="utf-8") as file:
         writer = csv.writer(file)
-        names = [f.name for f in fields(Setting)]
-        writer.writerow([*names, "error", "wall_s", "particle_steps"])
+        writer.writerow([*NAMES, "error", "wall_s", "particle_steps"])
+        writer.writerows(_row(*entry) for entry in entries)
         with multiprocessing.get_context("spawn").Pool(jobs, maxtasksperchild=8) as pool:
             for k, (setting, m, problem) in enumerate(pool.imap_unordered(_work, settings), 1):
                 head = f"{k}/{len(settings)} {setting.case} {setting.cells}: {setting.scheme}"
@@ -42,12 +48,15 @@ def run_sweep(cases: list[str], finest: bool, jobs: int, out: Path) -> list[Entr
                     print(f"{head}: broke: {problem}", flush=True)
                     continue
                 print(f"{head}: error {100 * m.error:.3g} %, {m.wall_s:.2f} s", flush=True)
-                row = [getattr(setting, name) for name in names]
-                cost = [f"{m.error:.6g}", f"{m.wall_s:.4g}", m.particle_steps]
-                writer.writerow([*row, *cost])
+                writer.writerow(_row(setting, m))
                 file.flush()
                 entries.append((setting, m))
-    return entries
+    order = list(CELLS)
+    return sorted(entries, key=lambda entry: order.index(entry[0].case))
+
+
+def _row(setting: Setting, m: Measure) -> list:
+    return [*(getattr(setting, name) for name in NAMES), f"{m.error:.6g}", f"{m.wall_s:.4g}", m.particle_steps]
 
 
 def read_sweep(path: Path) -> list[Entry]:

@@ -43,7 +43,7 @@ class Setting:
 
 
 def sweep(case: str, finest: bool = True) -> list[Setting]:
-    """Every scheme at the coarser resolutions, the two orders worth it at the finest, then one change at a time."""
+    """Every scheme at the coarser resolutions, musl at the finest, then one change at a time."""
     *coarse, fine = CELLS[case]
     settings = [
         Setting(case, cells, shape, transfer, order)
@@ -51,7 +51,8 @@ def sweep(case: str, finest: bool = True) -> list[Setting]:
         if not (order == "usl" and shape == "linear")  # refused by the scene: its stable step tends to 0
     ]
     if finest:
-        settings += [Setting(case, fine, shape) for shape in SHAPES]
+        transfers = ("flip",) if case == "slit" else TRANSFERS  # the slit's takes minutes for each
+        settings += [Setting(case, fine, shape, transfer) for shape in SHAPES for transfer in transfers]
     for cells, shape in itertools.product(coarse, SHAPES):
         base = Setting(case, cells, shape)
         changes = [{"precision": "f32"}, {"per_axis": 3}]
