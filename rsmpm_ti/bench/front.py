@@ -3,7 +3,7 @@
 from rsmpm_ti.bench.measures import Measure
 from rsmpm_ti.bench.settings import Setting
 
-LEVELS = (0.1, 0.05, 0.02, 0.01, 0.005, 0.002)
+LEVELS = (0.1, 0.05, 0.02, 0.01, 0.005, 0.0025)
 """Accuracies for which the cheapest setting is named."""
 
 Entry = tuple[Setting, Measure]
