@@ -123,9 +123,7 @@ def _other_schemes(field: FiniteElementField) -> list[Row]:
         error = field_error(scene, field, state.snapshot.x, state.sigma, state.snapshot.volume, state.nominal)
         rows.append(at_most(f"{name}: sigma_1 rms error, dx 0.5 mm", error.rms, 0.02, "the goal set for this grid"))
         ratio = state.nominal / state.strain / scene.rock.elasticity.uniaxial_modulus(2)
-        limit, why = (
-            (0.01, "the goal set for this grid") if seeding.fitted else (0.02, "stairs narrow the slit")
-        )
+        limit, why = (0.01, "the goal set for this grid") if seeding.fitted else (0.02, "stairs narrow the slit")
         expected = field.metadata["modulus_ratio"]["square"]
         rows.append(relative(f"{name}: modulus / E', dx 0.5 mm", expected, ratio, limit, why))
     return rows
