@@ -38,7 +38,7 @@ def at_most(quantity: str, got: float, limit: float, reason: str) -> Row:
 
 def at_least(quantity: str, got: float, least: float, reason: str) -> Row:
     """A number, such as an order of convergence, that must not fall below `least`; more is welcome."""
-    return Row(quantity, least, got, min(0.0, got - least), 0.0, reason)
+    return Row(quantity, least, got, 0.0 if got >= least else got - least, 0.0, reason)  # NaN stays NaN
 
 
 @dataclass(frozen=True)
