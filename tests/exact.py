@@ -53,26 +53,6 @@ def failure_factor(sigma_1, sigma_3, cohesion: float, friction_angle: float, ten
     return np.minimum(tension, shear), tension <= shear
 
 
-def hertz_pressure(load: float, modulus: float, radius: float) -> tuple[float, float]:
-    """(half width [m], peak pressure [Pa]) of a disc on a rigid plate, line load [N/m], plane strain modulus.
-
-    Johnson (1985), Contact Mechanics, eq. 4.43, 4.45, with 1/E* = 1/E'.
-    """
-    half_width = np.sqrt(4.0 * load * radius / (np.pi * modulus))
-    return half_width, 2.0 * load / (np.pi * half_width)
-
-
-def hondros_centre(half_angle: float) -> tuple[float, float]:
-    """(s_theta, s_r) over s0 at the centre of a disc pressed on two arcs of +-half_angle [degrees].
-
-    s0 = P/(pi R B), P the force of a uniform radial pressure. Hondros (1959), Aust. J. Appl. Sci. 10:243, at r = 0.
-    Tension positive: s_theta splits the disc, s_r is compression along the load.
-    """
-    a = np.radians(half_angle)
-    ratio = np.sin(2.0 * a) / a
-    return ratio - 1.0, -(ratio + 1.0)
-
-
 def hat(d):
     """Linear shape function and its slope against signed distance in cells: Sulsky, Chen & Schreyer (1994), eq. 20."""
     inside = np.abs(d) < 1.0

@@ -6,7 +6,13 @@ from dataclasses import dataclass, replace
 from rsmpm_ti.shape import Gimp, Linear, QuadraticBSpline
 from rsmpm_ti.transfer import Apic, PicFlip
 
-SHAPES = ("linear", "gimp", "bspline")
+SHAPES = {
+    "linear": lambda per_axis: Linear(),
+    "gimp": lambda per_axis: Gimp(half_width=0.5 / per_axis),
+    "bspline": lambda per_axis: QuadraticBSpline(),
+}
+"""Shape function for so many particles per axis, by name."""
+
 TRANSFERS = {"flip": PicFlip(), "apic": Apic()}
 ORDERS = ("musl", "usf", "usl")
 CELLS = {"slit": (100, 200, 400), "bar": (16, 32, 64), "vortex": (16, 32, 64)}
@@ -30,8 +36,7 @@ class Setting:
     @property
     def functions(self):
         """The shape function object."""
-        kinds = {"linear": Linear(), "gimp": Gimp(half_width=0.5 / self.per_axis), "bspline": QuadraticBSpline()}
-        return kinds[self.shape]
+        return SHAPES[self.shape](self.per_axis)
 
     @property
     def scheme(self) -> str:

@@ -4,12 +4,10 @@ import statistics
 import time
 from dataclasses import replace
 
+from rsmpm_ti.bench.settings import SHAPES
 from rsmpm_ti.library import load_scene
 from rsmpm_ti.run import start_taichi
 from rsmpm_ti.seeding import Lattice
-from rsmpm_ti.shape import Gimp, Linear, QuadraticBSpline
-
-SHAPES = {"linear": Linear, "gimp": Gimp, "bspline": QuadraticBSpline}
 
 
 def solver(shape: str, order: str):
@@ -20,7 +18,7 @@ def solver(shape: str, order: str):
 
     scene = load_scene("intact", time_scale=1.0, strain_end=1.5e-3)
     bodies = (replace(scene.bodies[0], seeding=Lattice()),)
-    scene = replace(scene, shape=SHAPES[shape](), order=order, bodies=bodies)
+    scene = replace(scene, shape=SHAPES[shape](2), order=order, bodies=bodies)
     sim = Simulation(scene, scene.particles())
     sort_particles(sim)
     clock = Clock(sim)

@@ -29,8 +29,6 @@ class Static:
     sigma: np.ndarray  # mean Cauchy stress of the hold, tension positive [Pa], [n, 3, 3]
     nominal: float  # mean platen force over the loaded width, [Pa]
     strain: float
-    steps: int
-    forces: np.ndarray  # mean force of each boundary on the body [N], [boundaries, dim]
 
 
 def static_state(scene: Scene, *, press: float = 8.0, hold: float = 4.0, cfl: float = 1.0) -> Static:
@@ -46,11 +44,11 @@ def static_state(scene: Scene, *, press: float = 8.0, hold: float = 4.0, cfl: fl
     clock = drive.clock
     drive.advance(round(press * transit / clock.dt))
     impulse, start, sigma = drive.survey.impulse, clock.time, 0.0
-    for _ in range(LOOKS):
-        drive.advance(max(1, (clock.total - clock.step) // (LOOKS - _)))
+    for left in range(LOOKS, 0, -1):
+        drive.advance(max(1, (clock.total - clock.step) // left))
         snapshot = take_snapshot(drive.sim, clock.time)
         sigma = sigma + snapshot.sigma / LOOKS
     forces = (drive.survey.impulse - impulse) / (clock.time - start)
     axis = loading.platens[0].axis
     nominal = 0.5 * (forces[0, axis] - forces[1, axis]) / loading.width
-    return Static(snapshot, sigma, float(nominal), clock.strain, clock.step, forces)
+    return Static(snapshot, sigma, float(nominal), clock.strain)

@@ -30,7 +30,9 @@ def uniaxial(full: bool) -> Outcome:
         curves.append((plane, modulus, result.history))
         why = "log and engineering strain differ by 0.07 % over the fit; the rest is inertia of the scaled mass"
         rows.append(relative(f"modulus, {plane} [Pa]", modulus, result.summary["apparent_modulus_Pa"], 0.002, why))
-        why = "a history row is 0.1 % of the load, a step's wave 0.13 % times time_scale/40"
+        why = (
+            "a history row is 0.1 % of the load, and the affine start leaves no first wave; the rest is a margin"
+        )
         strength = result.summary["first_failure_stress_Pa"]
         rows.append(relative(f"first failure, {plane} [Pa]", UCS, strength, 0.01, why))
     pulled = _compress(dx, False, strain_end=-1.2e-4, time_scale=10.0).summary
@@ -38,8 +40,6 @@ def uniaxial(full: bool) -> Outcome:
     rows.append(relative("direct tension, first failure [Pa]", -2e6, pulled["first_failure_stress_Pa"], 0.01, why))
     why = "the label itself: 1 is tension"
     rows.append(difference("direct tension, label", 1.0, float(pulled["first_failure_mode"] == "tension"), 0.0, why))
-    zz = np.abs(result.snapshot.sigma[:, 2, 2][result.snapshot.failure_mode == 0]).max(initial=0.0)
-    rows.append(at_most("plane stress: |sigma_zz|/UCS", zz / UCS, 1e-9, "held to round-off by its own equation"))
 
     def draw(figure):
         axes = figure.subplots()
