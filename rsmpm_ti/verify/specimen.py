@@ -30,9 +30,7 @@ def uniaxial(full: bool) -> Outcome:
         curves.append((plane, modulus, result.history))
         why = "log and engineering strain differ by 0.07 % over the fit; the rest is inertia of the scaled mass"
         rows.append(relative(f"modulus, {plane} [Pa]", modulus, result.summary["apparent_modulus_Pa"], 0.002, why))
-        why = (
-            "a history row is 0.1 % of the load, and the affine start leaves no first wave; the rest is a margin"
-        )
+        why = "a history row is 0.1 % of the load, and the affine start leaves no first wave; the rest is a margin"
         strength = result.summary["first_failure_stress_Pa"]
         rows.append(relative(f"first failure, {plane} [Pa]", UCS, strength, 0.01, why))
     pulled = _compress(dx, False, strain_end=-1.2e-4, time_scale=10.0).summary
