@@ -6,7 +6,7 @@ particles with the same base node keeps its node values in locals, loaded or add
 
 import taichi as ti
 
-from rsmpm_ti.material import check_failure, update_stress
+from rsmpm_ti.material import check_and_release, check_failure, update_stress
 from rsmpm_ti.shape import fold_at_walls, tensor_gradient, tensor_weight
 from rsmpm_ti.tensors import in_plane_times, isotropic
 
@@ -282,7 +282,10 @@ def g2p_span(sim: ti.template(), start, stop, slot, what: ti.template(), dt, tim
             sim.ledger.viscous[slot] += viscous
     if ti.static(what[2] and sim.particles.breaks):
         for p_check in range(start, stop):
-            check_failure(sim, p_check, time, slot)
+            if ti.static(sim.particles.cracks):
+                check_and_release(sim, p_check, dt, time, slot)
+            else:
+                check_failure(sim, p_check, time, slot)
 
 
 @ti.kernel

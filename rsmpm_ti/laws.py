@@ -10,6 +10,8 @@ from dataclasses import dataclass
 
 import taichi as ti
 
+from rsmpm_ti.averaging import Local, Nonlocal
+from rsmpm_ti.directional import Directional
 from rsmpm_ti.errors import refuse
 from rsmpm_ti.tensors import double_contraction, hughes_winget, isotropic, trace
 
@@ -52,6 +54,13 @@ class Hooke:
     @property
     def bulk(self) -> float:
         return self.E / (3.0 * (1.0 - 2.0 * self.nu))
+
+    @property
+    def crack_stiffness(self) -> tuple[float, float, float]:
+        """Stress lost across a crack, along it and out of the plane per opening strain of the crack [Pa]."""
+        if self.plane_stress:
+            return self.p_wave_modulus, self.nu * self.p_wave_modulus, 0.0
+        return self.p_wave_modulus, self.lam, self.lam
 
     @property
     def p_wave_modulus(self) -> float:
@@ -145,6 +154,11 @@ class MohrCoulomb:
             mode = 2
         return mode
 
+    @ti.func
+    def shear_load(self, sigma_1, sigma_3):
+        """How near to Mohr-Coulomb: 1 on the envelope, less inside."""
+        return (0.5 * (sigma_1 - sigma_3) + 0.5 * (sigma_1 + sigma_3) * self.sin_phi) / self.c_cos_phi
+
 
 @ti.data_oriented
 @dataclass(frozen=True, kw_only=True)
@@ -163,6 +177,8 @@ class Unbreakable:
 class CompressionOnly:
     """Choice 1 of the paper, sec. 3.2: a failed particle is a fluid without tension, p = max(K (1 - J), 0)."""
 
+    directional = False
+
     @ti.func
     def pressure(self, bulk, J):
         return ti.max(bulk * (1.0 - J), 0.0)
@@ -172,6 +188,8 @@ class CompressionOnly:
 @dataclass(frozen=True, kw_only=True)
 class Void:
     """Choice 2 of the paper, sec. 3.2: a failed particle carries nothing; only its mass stays."""
+
+    directional = False
 
     @ti.func
     def pressure(self, bulk, J):
@@ -185,6 +203,8 @@ class Clipped:
 
     tension_limit: float
     compression_limit: float
+
+    directional = False
 
     def __post_init__(self):
         for name in ("tension_limit", "compression_limit"):
@@ -242,8 +262,9 @@ class Rock:
     density: float
     elasticity: Hooke
     criterion: MohrCoulomb | Unbreakable
-    after_failure: CompressionOnly | Void | Clipped = CompressionOnly()
+    after_failure: CompressionOnly | Void | Clipped | Directional = CompressionOnly()
     viscosity: BulkViscosity | NoViscosity = BulkViscosity()
+    averaging: Local | Nonlocal = Local()
 
     def __post_init__(self):
         _positive("rock", density=self.density)

@@ -2,8 +2,10 @@
 
 import taichi as ti
 
+from rsmpm_ti.fracture import release, start_crack
 from rsmpm_ti.laws import pressure_energy
-from rsmpm_ti.tensors import extreme_principals, isotropic
+from rsmpm_ti.state import NO_SHADE
+from rsmpm_ti.tensors import extreme_principals, isotropic, principal_angle
 
 
 @ti.func
@@ -17,6 +19,8 @@ def record_failure(sim: ti.template(), p, mode, extremes, released, time):
     events.released[e] = released
     events.mode[e] = mode
     events.id[e] = particles.id[p]
+    if ti.static(particles.cracks):
+        events.angle[e] = particles.crack_angle[p]
 
 
 @ti.func
@@ -38,6 +42,45 @@ def update_stress(sim: ti.template(), p, L, dt):
         particles.q[p] = q
         lost = -dt * q * rate * particles.volume[p] * J
     return lost
+
+
+@ti.func
+def shaded(sim: ti.template(), p, angle):
+    """Whether a crack with a normal near `angle` runs beside the particle."""
+    return ti.cos(2.0 * (angle - sim.particles.shade_angle[p])) > 0.0 and sim.particles.shade_angle[p] < NO_SHADE
+
+
+@ti.func
+def failure_by_own_stress(sim: ti.template(), p, extremes):
+    """Mode by a particle's own stress: 0, 1 or 2. With averaging, tension is for the mean stress unless shaded."""
+    mode = sim.rock.criterion.mode(extremes[0], extremes[1])
+    if ti.static(sim.rock.averaging.acts):
+        if mode == 1 and not shaded(sim, p, principal_angle(sim.particles.sigma[p])):
+            mode = ti.select(sim.rock.criterion.shear_load(extremes[0], extremes[1]) >= 1.0, 2, 0)
+    return mode
+
+
+@ti.func
+def check_and_release(sim: ti.template(), p, dt, time, slot):
+    """The failure check for rock that cracks with a direction, and the stress of what has cracked."""
+    particles = sim.particles
+    old = particles.mode[p]
+    extremes = ti.Vector([0.0, 0.0])
+    if old != 2:
+        extremes = extreme_principals(particles.sigma[p])
+    if old == 0:
+        mode = failure_by_own_stress(sim, p, extremes)
+        if mode != 0:
+            start_crack(sim, p, mode, principal_angle(particles.sigma[p]))
+            if ti.static(particles.viscous):
+                particles.q[p] = 0.0
+    if particles.mode[p] != 0:
+        sigma, lost = release(sim, p, dt * particles.L[p])
+        lost *= particles.volume[p] * particles.J[p]
+        particles.sigma[p] = sigma
+        sim.ledger.released[slot] += ti.cast(lost, ti.f64)
+        if particles.mode[p] != old:
+            record_failure(sim, p, particles.mode[p], extremes, lost, time)
 
 
 @ti.func

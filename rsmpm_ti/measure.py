@@ -5,6 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 import taichi as ti
 
+from rsmpm_ti.fracture import spring_energy
 from rsmpm_ti.laws import pressure_energy
 from rsmpm_ti.sorting import cell_key, row_of_key
 from rsmpm_ti.state import SCALARS, Simulation
@@ -47,8 +48,11 @@ def _survey(sim: ti.template()):
         stored = J * rock.elasticity.energy(sigma)
         if ti.static(particles.breaks):
             if particles.mode[p] != 0:
-                bulk = ti.static(rock.elasticity.bulk)
-                stored = pressure_energy(rock.after_failure.pressure(bulk, J), bulk, J)
+                if ti.static(particles.cracks):
+                    stored += J * spring_energy(sim, p)
+                else:
+                    bulk = ti.static(rock.elasticity.bulk)
+                    stored = pressure_energy(rock.after_failure.pressure(bulk, J), bulk, J)
         xi = grid.local(particles.reference[p] + particles.u[p])
         sick = 0
         for d in ti.static(range(sim.dim)):

@@ -72,12 +72,16 @@ class Disc:
 
 @dataclass(frozen=True, kw_only=True)
 class Slit:
-    """A straight flaw: a rectangle `length` x `width` at `angle` degrees from +x, through the thickness in 3D."""
+    """A straight flaw: a rectangle `length` x `width` at `angle` degrees from +x, through the thickness in 3D.
+
+    `rounded`: its ends are half circles, as a saw or a drill leaves them; `length` is from end to end either way.
+    """
 
     centre: tuple[float, ...]
     length: float
     width: float
     angle: float
+    rounded: bool = False
 
     def __post_init__(self):
         check_coordinates("slit.centre", self.centre)
@@ -101,6 +105,9 @@ class Slit:
 
     def contains(self, x: np.ndarray) -> np.ndarray:
         s = np.abs(self.frame(x))
+        if self.rounded:
+            beyond = np.maximum(s[:, 0] - 0.5 * (self.length - self.width), 0.0)
+            return np.hypot(beyond, s[:, 1]) < 0.5 * self.width
         return (s[:, 0] < 0.5 * self.length) & (s[:, 1] < 0.5 * self.width)
 
     def bounds(self) -> tuple[np.ndarray, np.ndarray]:

@@ -5,7 +5,7 @@ Also the check that a slit's two faces really separate, which needs the particle
 
 import itertools
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import NamedTuple
 
 import numpy as np
@@ -197,7 +197,7 @@ def check_slit(region, slit: Slit, seeding, shape, dx: float, origin: np.ndarray
 
 def _bridge_of_width(region, slit: Slit, width: float, seeding, shape, dx: float, origin: np.ndarray) -> float:
     """The bridge if this slit had another width, on a patch of intact material around it."""
-    trial = Slit(centre=slit.centre, length=slit.length, width=min(width, slit.length), angle=slit.angle)
+    trial = replace(slit, width=min(width, slit.length))
     lower, upper = (b[:2] for b in region.bounds())
     low, high = trial.bounds()
     patch = _Patch(lower=np.maximum(lower, low - 4 * dx), upper=np.minimum(upper, high + 4 * dx), slit=trial)

@@ -21,6 +21,8 @@ class Linear:
     width = 2  # nodes per axis
     shift = 0.0  # base node = floor(x/dx - shift)
     stable_cfl = 1.37  # smallest limit of musl/usf with free edges at any offset, in units of dx/c_p
+    crack_band = 1.0  # width of the band that a crack opens over [cells]
+    variance = 1.0 / 6.0  # second moment of the function [cells^2]
 
     @ti.func
     def weights(self, r):
@@ -48,6 +50,7 @@ class Gimp:
     width = 3
     shift = 0.5
     stable_cfl = 1.7
+    crack_band = 1.5
 
     def __post_init__(self):
         if not 0.0 < self.half_width <= 0.5:
@@ -60,6 +63,10 @@ class Gimp:
     @ti.func
     def gradients(self, r):
         return ti.Matrix.rows([self.slope(r), self.slope(r - 1.0), self.slope(r - 2.0)])
+
+    @property
+    def variance(self) -> float:
+        return 1.0 / 6.0 + self.half_width**2 / 3.0
 
     @ti.func
     def value(self, r):
@@ -89,6 +96,8 @@ class QuadraticBSpline:
     width = 3
     shift = 0.5
     stable_cfl = 1.7
+    crack_band = 2.0
+    variance = 0.25
 
     @ti.func
     def weights(self, r):

@@ -9,6 +9,7 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from rsmpm_ti.boundaries import Fixed, Platen, Wall
+from rsmpm_ti.directional import check_cracks
 from rsmpm_ti.errors import SceneError, refuse
 from rsmpm_ti.laws import Rock, Unbreakable
 from rsmpm_ti.regions import Region, check_coordinates, slits_of
@@ -205,6 +206,7 @@ class Scene:
             raise refuse("rock.elasticity.plane_stress", True, "False in 3D", "a plate is a 2D scene")
         self._check_bodies()
         self._check_loading()
+        check_cracks(self.rock, self.shape, self.dim, self.domain.dx)
         self._check_step()
 
     def _check_bodies(self) -> None:

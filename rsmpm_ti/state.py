@@ -13,6 +13,9 @@ from rsmpm_ti.traversal import Chunks, Stripes
 MARGIN = 3
 """Cells of empty grid around the domain, so that no stencil leaves the arrays."""
 
+NO_SHADE = 100.0
+"""Angle [rad] beside a crack of a particle that none runs beside."""
+
 BLOCK = 8
 """Cells per axis of a sparse block."""
 
@@ -115,6 +118,16 @@ class Particles:
         if self.breaks:
             self.mode = ti.field(ti.i32, count)
             whole_fields.append(self.mode)
+        self.cracks = self.breaks and scene.rock.after_failure.directional
+        if self.cracks:
+            # angle of the crack's normal [rad]; opening strains across it and along it, and their largest; slip strain
+            self.crack_angle, self.slip = ti.field(real, count), ti.field(real, count)
+            self.opening, self.widest = vector(2), vector(2)
+            real_fields += [self.crack_angle, self.slip, self.opening, self.widest]
+        if self.breaks and scene.rock.averaging.acts:
+            # overload is of one step only; shade_angle: normal of the crack beside [rad]
+            self.overload, self.shade_angle = ti.field(real, count), ti.field(real, count)
+            real_fields.append(self.shade_angle)
         self.real_components = tuple(c for field in real_fields for c in _components(field))
         self.whole_components = tuple(whole_fields)
         self.key, self.order = ti.field(ti.i32, count), ti.field(ti.i32, count)
@@ -130,15 +143,32 @@ def _components(field) -> tuple:
 
 @ti.data_oriented
 class Events:
-    """Failure events in the order in which they happen; at most one per particle."""
+    """Failure events in the order in which they happen; at most one of each mode per particle."""
 
     def __init__(self, scene: Scene, capacity: int, real):
         self.count, self.by_mode = ti.field(ti.i32, ()), ti.field(ti.i32, 3)
+        if scene.rock.criterion.breaks and scene.rock.after_failure.directional:
+            capacity *= 2  # a particle that failed in tension may fail in shear later
         capacity = capacity if scene.rock.criterion.breaks else 1
         self.time, self.sigma_1 = ti.field(ti.f64, capacity), ti.field(real, capacity)
         self.sigma_3, self.released = ti.field(real, capacity), ti.field(real, capacity)
         self.x = ti.Vector.field(scene.dim, real, capacity)
         self.mode, self.id = ti.field(ti.i32, capacity), ti.field(ti.i32, capacity)
+        if scene.rock.after_failure.directional:
+            self.angle = ti.field(real, capacity)
+
+
+@ti.data_oriented
+class Means:
+    """Node fields of averaged stress: sums of V sigma and V, a second copy for blurring, and the largest overload."""
+
+    def __init__(self, scene: Scene, grid: Grid, real):
+        taps = scene.rock.averaging.taps(scene.domain.dx, scene.shape.variance)
+        self.reach, self.taps = len(taps) // 2, ti.field(real, len(taps))
+        self.taps.from_numpy(np.array(taps))
+        self.sums, self.other = (ti.Vector.field(5, real, grid.nodes) for _ in range(2))
+        self.peak = ti.field(real, grid.nodes)
+        self.seen = ti.field(ti.i32, ())  # events whose shade has been cast
 
 
 @ti.data_oriented
@@ -194,6 +224,7 @@ class Simulation:
         self.stencil = offsets(scene.shape, scene.dim)
         self.size = len(self.stencil)  # nodes of a stencil
         self.density, self.wave_speed = scene.density, scene.wave_speed
+        self.band = scene.shape.crack_band * scene.domain.dx
         # mass scaling must leave the weight of a body unchanged, so its acceleration shrinks as its density grows
         force = scene.loading.body_force or (0.0,) * scene.dim
         self.heavy = any(component != 0.0 for component in force)
@@ -209,6 +240,9 @@ class Simulation:
         self.traversal = Chunks(count) if gpu else Stripes(self.grid.nodes[0])
         self.nodes = Nodes(scene, self.grid, real, use_sparse_grid(scene, count))
         self.events, self.ledger = Events(scene, count, real), Ledger(scene, self.traversal.count)
+        self.averaging = scene.rock.criterion.breaks and scene.rock.averaging.acts
+        if self.averaging:
+            self.means = Means(scene, self.grid, real)
         self.report = Report(scene)
         self._fill(scene, seeds)
 
@@ -225,6 +259,8 @@ class Simulation:
         particles.v.from_numpy(v[order].astype(kind))
         particles.volume.from_numpy(volume[order].astype(kind))
         particles.J.fill(1.0)
+        if self.averaging:
+            particles.shade_angle.fill(NO_SHADE)
         particles.id.from_numpy(order.astype(np.int32))
 
 

@@ -5,6 +5,7 @@ import math
 from rsmpm_ti.kernels import g2p, g2p_remap, p2g
 from rsmpm_ti.node_update import clear_nodes, momentum_to_velocity, update_nodes
 from rsmpm_ti.state import Simulation
+from rsmpm_ti.tracking import track_cracks
 
 VELOCITY_POSITION = (True, True, False)
 POSITION_STRESS = (False, True, True)
@@ -73,5 +74,7 @@ class Clock:
         for _ in range(min(steps, self.total - self.step)):
             factor = self.factor(self.time + 0.5 * self.dt)
             self._pass_list(self._sim, self.dt, self.time + self.dt, factor)
+            if self._sim.averaging:
+                track_cracks(self._sim, self.time + self.dt)
             self.strain += factor * self.strain_rate * self.dt
             self.step += 1

@@ -145,6 +145,29 @@ def hughes_winget(s: ti.template(), G: ti.template()):
 
 
 @ti.func
+def rotation_angle(G: ti.template()):
+    """Angle [rad] by which `hughes_winget` turns a packed 2D stress."""
+    q = G[0, 0] * G[1, 1] - G[0, 1] * G[1, 0]
+    d = 1.0 + 0.5 * (G[0, 0] + G[1, 1]) + 0.25 * q
+    return 2.0 * ti.atan2(0.25 * (G[1, 0] - G[0, 1]), d)
+
+
+@ti.func
+def turned(s: ti.template(), angle):
+    """A packed 2D stress in a frame turned by `angle` [rad]: (nn, tt, zz, nt)."""
+    cos_2, sin_2 = ti.cos(2.0 * angle), ti.sin(2.0 * angle)
+    centre, a, b = 0.5 * (s[0] + s[1]), 0.5 * (s[0] - s[1]), s[3]
+    turned_a, turned_b = a * cos_2 + b * sin_2, b * cos_2 - a * sin_2
+    return ti.Vector([centre + turned_a, centre - turned_a, s[2], turned_b])
+
+
+@ti.func
+def principal_angle(s: ti.template()):
+    """Angle [rad] of the larger in-plane principal stress of a packed 2D stress from the first axis."""
+    return 0.5 * ti.atan2(2.0 * s[3], s[0] - s[1])
+
+
+@ti.func
 def trace(s: ti.template()):
     """Trace of a packed tensor."""
     return s[0] + s[1] + s[2]

@@ -1,0 +1,67 @@
+"""Which stress decides on tensile failure: a particle's own, or its mean over a length of the rock."""
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from rsmpm_ti.errors import refuse
+
+
+@dataclass(frozen=True, kw_only=True)
+class Local:
+    """Each particle's own stress decides, as in the paper: what fails first then depends on cell size and edges."""
+
+    acts = False
+
+
+@dataclass(frozen=True, kw_only=True)
+class Nonlocal:
+    """The mean stress over a length of the rock decides on tension; its most overloaded particle fails first.
+
+    The mean is weighted by a Gaussian of standard deviation `length` [m], a property of the rock like its grain, over
+    the rock that is there: free faces and flaws weigh nothing. Bazant & Jirasek (2002), J. Eng. Mech. 128:1119, eq. 1.
+
+    A crack grows as a line, not as the blob in which the smooth stress is high: what lies beside a crack, outside a
+    wedge of `wedge` degrees about its line and nearer than `shade` lengths, is judged by its own stress, which the
+    crack relieves. Local tracking with an exclusion radius, Cervera & Chiumenti (2006), Comput. Methods Appl. Mech.
+    Eng. 196:304, sec. 4.
+    """
+
+    length: float
+    shade: float = 4.0
+    wedge: float = 25.0
+
+    acts = True
+
+    def __post_init__(self):
+        if not (math.isfinite(self.length) and self.length > 0.0):
+            raise refuse("averaging.length", self.length, "a positive length in metres")
+        if not 0.0 <= self.shade <= 100.0:
+            raise refuse("averaging.shade", self.shade, "in [0, 100] lengths")
+        if not 0.0 < self.wedge < 90.0:
+            raise refuse("averaging.wedge", self.wedge, "in (0, 90) degrees")
+
+    @property
+    def radius(self) -> float:
+        """Distance up to which a crack shades what lies beside it [m]."""
+        return self.shade * self.length
+
+    @property
+    def slope(self) -> float:
+        """Distance across over distance along of the edge of the wedge that a crack does not shade."""
+        return math.tan(math.radians(self.wedge))
+
+    def taps(self, dx: float, variance: float) -> tuple[float, ...]:
+        """Weights of a row of nodes, symmetric about the middle one, whose variance with that of spreading to nodes
+        and reading back, `variance` cells^2 each, is length^2."""
+        spare = (self.length / dx) ** 2 - 2.0 * variance
+        if spare < 0.36:  # a sampled Gaussian this narrow has another variance than it should; three points have it
+            return (0.5 * spare, 1.0 - spare, 0.5 * spare)
+        reach = math.ceil(3.0 * math.sqrt(spare))
+        weight = np.exp(-0.5 * np.arange(-reach, reach + 1) ** 2 / spare)
+        return tuple((weight / weight.sum()).tolist())
+
+    def least_length(self, dx: float, variance: float) -> float:
+        """The shortest length that this grid can average over [m]."""
+        return math.sqrt(2.0 * variance) * dx

@@ -1,0 +1,161 @@
+"""Stress of one particle of rock that cracks with a direction: where it fails, how it opens, slips and closes."""
+
+import math
+
+import taichi as ti
+
+from rsmpm_ti.directional import FRESH, SWEEPS
+from rsmpm_ti.tensors import (
+    double_contraction,
+    extreme_principals,
+    principal_angle,
+    rotation_angle,
+    symmetric,
+    turned,
+)
+
+
+@ti.func
+def strength_left(sim: ti.template(), p):
+    """Shares of strength left: across the crack, across the second one at right angles, and of cohesion."""
+    particles, criterion = sim.particles, sim.rock.criterion
+    soft = sim.rock.after_failure.softening
+    f_t, widest = criterion.tensile_strength, particles.widest[p]
+    n = soft.share(widest[0], f_t, soft.G_f_I, sim.band)
+    t = soft.share(widest[1], f_t, soft.G_f_I, sim.band)
+    shear = soft.share(particles.slip[p], criterion.cohesion, soft.G_f_II, sim.band)
+    return ti.Vector([ti.min(n, shear), ti.min(t, shear), shear])
+
+
+@ti.func
+def start_crack(sim: ti.template(), p, mode, angle):
+    """Mark a particle as failed in tension (1) or shear (2), with the normal of its crack at `angle` [rad]."""
+    particles = sim.particles
+    particles.mode[p] = mode
+    particles.crack_angle[p] = angle
+    if mode == 1:
+        particles.widest[p] = ti.Vector([FRESH, 0.0])
+    else:
+        particles.slip[p] = ti.max(particles.slip[p], FRESH)
+
+
+@ti.func
+def spring_energy(sim: ti.template(), p):
+    """Energy per volume that partly opened cracks give back on closing: half of secant stiffness times opening^2."""
+    particles = sim.particles
+    tension = strength_left(sim, p) * sim.rock.criterion.tensile_strength
+    opening, widest = particles.opening[p], particles.widest[p]
+    energy = 0.0
+    for d in ti.static(range(2)):
+        energy += 0.5 * tension[d] * opening[d] * opening[d] / ti.max(widest[d], FRESH)
+    return energy
+
+
+@ti.func
+def open_cracks(sim: ti.template(), p, s, left):
+    """Stress in the crack's frame after both cracks have opened or closed; moves openings, and the frame if it turns.
+
+    `s`: elastic trial stress in that frame; `left`: see `strength_left`.
+    """
+    particles, law = sim.particles, sim.rock.after_failure
+    M, lam, lam_z = ti.static(sim.rock.elasticity.crack_stiffness)
+    opening, widest = particles.opening[p], particles.widest[p]
+    shut = s + ti.Vector(
+        [
+            M * opening[0] + lam * opening[1],
+            lam * opening[0] + M * opening[1],
+            lam_z * (opening[0] + opening[1]),
+            0.0,
+        ]
+    )
+    if ti.static(law.rotating):
+        # to the nearer principal direction, so that each crack keeps its own history
+        turn = principal_angle(shut)
+        turn -= 0.5 * math.pi * ti.round(turn / (0.5 * math.pi))
+        shut = turned(shut, turn)
+        particles.crack_angle[p] = particles.crack_angle[p] + turn
+    tension = left * sim.rock.criterion.tensile_strength
+    for _ in ti.static(range(SWEEPS)):
+        opening[0] = law.opening(shut[0] - lam * opening[1], tension[0], widest[0], M)
+        opening[1] = law.opening(shut[1] - lam * opening[0], tension[1], widest[1], M)
+    particles.opening[p] = opening
+    particles.widest[p] = ti.max(widest, opening)
+    return shut - ti.Vector(
+        [
+            M * opening[0] + lam * opening[1],
+            lam * opening[0] + M * opening[1],
+            lam_z * (opening[0] + opening[1]),
+            0.0,
+        ]
+    )
+
+
+@ti.func
+def slip_on_crack(sim: ti.template(), p, s, left):
+    """Shear across the crack is at most what its envelope allows; more of it slips.
+
+    tau^2 = (c - s_nn tan(phi_r))^2 - (c - f tan(phi_r))^2 with what is left of cohesion c and tensile strength f:
+    the hyperbola of Carol, Prat & Lopez (1997), J. Eng. Mech. 123:765, eq. 3. No shear while the crack opens, where
+    s_nn = f, so that no fracture energy is spent twice; friction |s_nn| tan(phi_r) when nothing is left.
+    """
+    particles, law, criterion = sim.particles, sim.rock.after_failure, sim.rock.criterion
+    c, f = left[0] * criterion.cohesion, left[0] * criterion.tensile_strength
+    reach, vertex = c - s[0] * law.tan_residual, c - f * law.tan_residual
+    limit = ti.sqrt(ti.max(reach * reach - vertex * vertex, 0.0))
+    limit = ti.select(s[0] < f, limit, 0.0)
+    excess = ti.abs(s[3]) - limit
+    if excess > 0.0:
+        particles.slip[p] = particles.slip[p] + excess / sim.rock.elasticity.mu
+        s[3] = ti.select(s[3] > 0.0, limit, -limit)
+    return s
+
+
+@ti.func
+def slip_everywhere(sim: ti.template(), p, s, share):
+    """Mohr-Coulomb of crushed rock on every plane, with `share` of its cohesion left, at constant volume.
+
+    In the plane the mean stress stays and the radius shrinks; sigma_zz is then held to what the envelope allows.
+    """
+    particles, law, criterion = sim.particles, sim.rock.after_failure, sim.rock.criterion
+    sin_phi = law.sin_residual + (criterion.sin_phi - law.sin_residual) * share
+    c_cos_phi = share * criterion.cohesion * ti.sqrt(1.0 - sin_phi * sin_phi)
+    centre, half = 0.5 * (s[0] + s[1]), 0.5 * (s[0] - s[1])
+    radius = ti.sqrt(half * half + s[3] * s[3])
+    most = ti.max(c_cos_phi - centre * sin_phi, 0.0)
+    if radius > most:
+        particles.slip[p] = particles.slip[p] + (radius - most) / sim.rock.elasticity.mu
+        scale = most / radius
+        s[0], s[1], s[3] = centre + half * scale, centre - half * scale, s[3] * scale
+        radius = most
+    flow = (1.0 + sin_phi) / (1.0 - sin_phi)
+    s[2] = ti.max(s[2], flow * (centre + radius) - 2.0 * c_cos_phi / (1.0 - sin_phi))
+    return s
+
+
+@ti.func
+def release(sim: ti.template(), p, G):
+    """Stress of a cracked particle, from its elastic trial stress in particles.sigma; returns (stress, lost).
+
+    `lost`: energy per volume that went into opening, slip and damage in this step. G: displacement gradient.
+    """
+    particles, elasticity = sim.particles, sim.rock.elasticity
+    trial = particles.sigma[p]
+    before = elasticity.energy(trial) + spring_energy(sim, p)
+    left = strength_left(sim, p)
+    particles.crack_angle[p] = particles.crack_angle[p] + rotation_angle(G)
+    s = open_cracks(sim, p, turned(trial, particles.crack_angle[p]), left)
+    if ti.static(not sim.rock.after_failure.rotating):
+        if particles.mode[p] == 1:
+            s = slip_on_crack(sim, p, s, left)
+    if particles.mode[p] == 1:
+        extremes = extreme_principals(s)
+        if sim.rock.criterion.shear_load(extremes[0], extremes[1]) >= 1.0:
+            start_crack(sim, p, 2, particles.crack_angle[p])
+            left = strength_left(sim, p)
+    if particles.mode[p] == 2:
+        s = slip_everywhere(sim, p, s, left[2])
+    sigma = turned(s, -particles.crack_angle[p])
+    # the step's work is done by the mean of old and new stress, that of the trial by more
+    too_much = 0.5 * double_contraction(trial - sigma, symmetric(G))
+    lost = before - elasticity.energy(sigma) - spring_energy(sim, p) - too_much
+    return sigma, lost

@@ -1,0 +1,65 @@
+"""Mean stress over a length of the rock: spread to nodes, blurred along each axis, read back. 2D."""
+
+import taichi as ti
+
+from rsmpm_ti.kernels import coordinates, weights_at
+from rsmpm_ti.shape import tensor_weight
+
+
+@ti.kernel
+def clear_means(sim: ti.template()):
+    zero = ti.Vector.zero(float, 5)
+    for i in ti.grouped(sim.means.sums):
+        sim.means.sums[i] = zero
+        sim.means.peak[i] = 0.0
+
+
+@ti.kernel
+def spread_stress(sim: ti.template(), colour: int):
+    """sum w_ip V_p sigma_p and sum w_ip V_p to nodes."""
+    particles = sim.particles
+    for t in range(sim.traversal.items):
+        start, stop = sim.traversal.span_of_colour(t, colour)
+        for p in range(start, stop):
+            xi = coordinates(sim, p)
+            base = sim.grid.base(xi, sim.shape)
+            w, _ = weights_at(sim, xi, base)
+            sigma, V_p = particles.sigma[p], particles.volume[p] * particles.J[p]
+            carried = V_p * ti.Vector([sigma[0], sigma[1], sigma[2], sigma[3], 1.0])
+            for offset in ti.static(sim.stencil):
+                i = base + ti.Vector(offset)
+                sim.traversal.add(sim.means.sums, i, tensor_weight(w, offset) * carried)
+
+
+@ti.kernel
+def blur(sim: ti.template(), source: ti.template(), target: ti.template(), axis: ti.template()):
+    """Convolution of node sums with the taps along one axis."""
+    reach = ti.static(sim.means.reach)
+    for i in ti.grouped(source):
+        total = ti.Vector.zero(float, 5)
+        for k in range(-reach, reach + 1):
+            j = i + k * ti.Vector.unit(2, axis)
+            if j[axis] >= 0 and j[axis] < sim.grid.nodes[axis]:
+                total += sim.means.taps[k + reach] * source[j]
+        target[i] = total
+
+
+@ti.func
+def mean_stress(sim: ti.template(), p):
+    """Packed mean stress at a particle."""
+    xi = coordinates(sim, p)
+    base = sim.grid.base(xi, sim.shape)
+    w, _ = weights_at(sim, xi, base)
+    total = ti.Vector.zero(float, 5)
+    for offset in ti.static(sim.stencil):
+        total += tensor_weight(w, offset) * sim.means.sums[base + ti.Vector(offset)]
+    return ti.Vector([total[0], total[1], total[2], total[3]]) / total[4]
+
+
+def smooth_stress(sim) -> None:
+    """Fill sim.means.sums for `mean_stress`."""
+    clear_means(sim)
+    for colour in range(sim.traversal.colours):
+        spread_stress(sim, colour)
+    blur(sim, sim.means.sums, sim.means.other, 0)
+    blur(sim, sim.means.other, sim.means.sums, 1)

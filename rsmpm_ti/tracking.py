@@ -1,0 +1,72 @@
+"""Cracks that grow where the mean stress is highest: judge, let the most overloaded fail, shade what lies beside."""
+
+import taichi as ti
+
+from rsmpm_ti.fracture import start_crack
+from rsmpm_ti.kernels import coordinates
+from rsmpm_ti.material import record_failure, shaded
+from rsmpm_ti.smoothing import mean_stress, smooth_stress
+from rsmpm_ti.tensors import extreme_principals, principal_angle
+
+
+@ti.kernel
+def judge(sim: ti.template()):
+    """Overload of each intact particle by the mean stress, where it exceeds its strength; its nodes learn the most."""
+    particles = sim.particles
+    for p in particles.mode:
+        particles.overload[p] = 0.0
+        if particles.mode[p] == 0:
+            mean = mean_stress(sim, p)
+            load = extreme_principals(mean)[0] / sim.rock.criterion.tensile_strength
+            angle = principal_angle(mean)
+            if load >= 1.0 and not shaded(sim, p, angle):
+                particles.overload[p] = load
+                particles.crack_angle[p] = angle
+                base = sim.grid.base(coordinates(sim, p), sim.shape)
+                for offset in ti.static(sim.stencil):
+                    ti.atomic_max(sim.means.peak[base + ti.Vector(offset)], load)
+
+
+@ti.kernel
+def fail_most_overloaded(sim: ti.template(), time: ti.f64):
+    particles = sim.particles
+    for p in particles.mode:
+        load = particles.overload[p]
+        if load > 0.0:
+            base = sim.grid.base(coordinates(sim, p), sim.shape)
+            most = load
+            for offset in ti.static(sim.stencil):
+                most = ti.max(most, sim.means.peak[base + ti.Vector(offset)])
+            if load >= most:
+                start_crack(sim, p, 1, particles.crack_angle[p])
+                if ti.static(particles.viscous):
+                    particles.q[p] = 0.0
+                record_failure(sim, p, 1, extreme_principals(particles.sigma[p]), 0.0, time)
+
+
+@ti.kernel
+def shade(sim: ti.template()):
+    """Mark what lies beside the cracks that were recorded since the last call."""
+    particles, events = sim.particles, sim.events
+    radius, slope = ti.static(sim.rock.averaging.radius, sim.rock.averaging.slope)
+    for p in particles.mode:
+        if particles.mode[p] == 0:
+            x = particles.reference[p] + particles.u[p]
+            for e in range(sim.means.seen[None], events.count[None]):
+                if events.mode[e] == 1:
+                    d = x - events.x[e]
+                    if d.norm() < radius:
+                        n = ti.Vector([ti.cos(events.angle[e]), ti.sin(events.angle[e])])
+                        across, along = ti.abs(d.dot(n)), ti.abs(d[0] * n[1] - d[1] * n[0])
+                        if across > slope * along:
+                            particles.shade_angle[p] = events.angle[e]
+    for _ in range(1):
+        sim.means.seen[None] = events.count[None]
+
+
+def track_cracks(sim, time: float) -> None:
+    """The tensile check by the mean stress, after a step."""
+    smooth_stress(sim)
+    judge(sim)
+    fail_most_overloaded(sim, time)
+    shade(sim)
