@@ -11,6 +11,7 @@ from dataclasses import dataclass
 import taichi as ti
 
 from rsmpm_ti.errors import refuse
+from rsmpm_ti.heterogeneity import Uniform, Weibull
 from rsmpm_ti.tensors import double_contraction, hughes_winget, isotropic, trace
 
 
@@ -237,13 +238,14 @@ class NoViscosity:
 @ti.data_oriented
 @dataclass(frozen=True, kw_only=True)
 class Rock:
-    """One rock: density [kg/m^3] and the four laws it is made of."""
+    """One rock: density [kg/m^3], the four laws it is made of, and how its strength varies from place to place."""
 
     density: float
     elasticity: Hooke
     criterion: MohrCoulomb | Unbreakable
     after_failure: CompressionOnly | Void | Clipped = CompressionOnly()
     viscosity: BulkViscosity | NoViscosity = BulkViscosity()
+    heterogeneity: Uniform | Weibull = Uniform()
 
     def __post_init__(self):
         _positive("rock", density=self.density)

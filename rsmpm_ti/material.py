@@ -51,7 +51,10 @@ def check_failure(sim: ti.template(), p, time, slot):
     sigma, mode = particles.sigma[p], particles.mode[p]
     if mode == 0:
         extremes = extreme_principals(sigma)
-        mode = rock.criterion.mode(extremes[0], extremes[1])
+        load = extremes
+        if ti.static(particles.varied):
+            load = extremes / particles.strength[p]  # the same as k times cohesion and tensile strength
+        mode = rock.criterion.mode(load[0], load[1])
         if mode != 0:
             J = particles.J[p]
             particles.mode[p] = mode

@@ -8,12 +8,12 @@ import json
 import types
 import typing
 
-from rsmpm_ti import boundaries, laws, regions, seeding, shape, spec, starts, transfer
+from rsmpm_ti import boundaries, heterogeneity, laws, regions, seeding, shape, spec, starts, transfer
 from rsmpm_ti.errors import SceneError, refuse
 
 KNOWN = {
     name: thing
-    for module in (boundaries, laws, regions, seeding, shape, spec, starts, transfer)
+    for module in (boundaries, heterogeneity, laws, regions, seeding, shape, spec, starts, transfer)
     for name, thing in vars(module).items()
     if dataclasses.is_dataclass(thing) and isinstance(thing, type)
 }
