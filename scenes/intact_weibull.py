@@ -1,4 +1,4 @@
-"""The cube without a flaw, of rock whose strength varies from place to place: damage gathers until it breaks."""
+"""The cube without a flaw, of rock whose strength varies from place to place: it breaks from its weak places."""
 
 import math
 
@@ -19,7 +19,7 @@ def scene(
     seed: int = 1,
     correlation_length: float = 2.0 * mm,
     dx: float = 0.5 * mm,
-    strain_end: float = 2.0e-3,
+    strain_end: float = 5.0e-4,
     time_scale: float = 10.0,
 ) -> Scene:
     strength = Weibull(

@@ -8,6 +8,7 @@ import pytest
 from scipy.special import ndtri
 from scipy.stats import kstest, norm, weibull_min
 
+from rsmpm_ti import load_scene, simulate
 from rsmpm_ti.errors import SceneError
 from rsmpm_ti.heterogeneity import Uniform, Weibull
 from rsmpm_ti.laws import Hooke, MohrCoulomb, NoViscosity, Rock
@@ -232,3 +233,17 @@ def test_particle_fails_at_its_own_strength_and_no_other(taichi_f64):
     events = sim.events
     own, recorded = events.id.to_numpy()[:64], events.sigma_1.to_numpy()[:64] + events.sigma_3.to_numpy()[:64]
     assert recorded == pytest.approx(axial[own], rel=1e-12)  # an event keeps the stress itself, not its share of k
+
+
+def test_specimen_first_fails_at_its_weakest_particle():
+    """Stress is uniform until then: UCS of the rock times the smallest factor, at that particle's place."""
+    scene = load_scene("intact_weibull", dx=2.5 * MM, time_scale=40.0, strain_end=3.8e-4)
+    # on a lattice: the scene's jitter makes stress noise of 2 %
+    scene = replace(scene, shape=Linear(), bodies=(replace(scene.bodies[0], seeding=Lattice()),))
+    x, k = scene.particles()[0].x, strengths_by_seed(scene)
+    result = simulate(scene, threads=1)
+    # steps of 0.1 % of the load, and inertia of the scaled mass: 0.1 % of the intact specimen's strength at 40
+    assert result.summary["first_failure_stress_Pa"] == pytest.approx(25.520e6 * k.min(), rel=0.005)
+    assert result.summary["first_failure_mode"] == "shear"
+    assert result.summary["first_failure_position_m"] == pytest.approx(x[k.argmin()], abs=0.1 * MM)
+    assert np.array_equal(result.snapshot.strength, k)
