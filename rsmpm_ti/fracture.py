@@ -16,15 +16,36 @@ from rsmpm_ti.tensors import (
 
 
 @ti.func
+def strengths(sim: ti.template(), p):
+    """Tensile strength and cohesion of a particle's rock before it cracked [Pa]."""
+    f_t, c = sim.rock.criterion.tensile_strength, sim.rock.criterion.cohesion
+    if ti.static(sim.particles.varied):
+        f_t *= sim.particles.strength[p]
+        c *= sim.particles.strength[p]
+    return ti.Vector([f_t, c])
+
+
+@ti.func
+def load_factors(sim: ti.template(), p, extremes):
+    """Extreme principal stresses as the criterion sees them: dividing by k is multiplying both strengths by it."""
+    load = extremes
+    if ti.static(sim.particles.varied):
+        load = extremes / sim.particles.strength[p]
+    return load
+
+
+@ti.func
 def strength_left(sim: ti.template(), p):
-    """Shares of strength left: across the crack, across the second one at right angles, and of cohesion."""
-    particles, criterion = sim.particles, sim.rock.criterion
-    soft = sim.rock.after_failure.softening
-    f_t, widest = criterion.tensile_strength, particles.widest[p]
-    n = soft.share(widest[0], f_t, soft.G_f_I, sim.band)
-    t = soft.share(widest[1], f_t, soft.G_f_I, sim.band)
-    shear = soft.share(particles.slip[p], criterion.cohesion, soft.G_f_II, sim.band)
-    return ti.Vector([ti.min(n, shear), ti.min(t, shear), shear])
+    """What is left of the tensile strength across the crack and across the one at right angles, and of cohesion [Pa].
+
+    Slip wears the tensile strength away with the cohesion.
+    """
+    particles, soft = sim.particles, sim.rock.after_failure.softening
+    full, widest = strengths(sim, p), particles.widest[p]
+    n = soft.share(widest[0], full[0], soft.G_f_I, sim.band)
+    t = soft.share(widest[1], full[0], soft.G_f_I, sim.band)
+    shear = soft.share(particles.slip[p], full[1], soft.G_f_II, sim.band)
+    return ti.Vector([ti.min(n, shear) * full[0], ti.min(t, shear) * full[0], shear * full[1]])
 
 
 @ti.func
@@ -43,7 +64,7 @@ def start_crack(sim: ti.template(), p, mode, angle):
 def spring_energy(sim: ti.template(), p):
     """Energy per volume that partly opened cracks give back on closing: half of secant stiffness times opening^2."""
     particles = sim.particles
-    tension = strength_left(sim, p) * sim.rock.criterion.tensile_strength
+    tension = strength_left(sim, p)
     opening, widest = particles.opening[p], particles.widest[p]
     energy = 0.0
     for d in ti.static(range(2)):
@@ -74,10 +95,9 @@ def open_cracks(sim: ti.template(), p, s, left):
         turn -= 0.5 * math.pi * ti.round(turn / (0.5 * math.pi))
         shut = turned(shut, turn)
         particles.crack_angle[p] = particles.crack_angle[p] + turn
-    tension = left * sim.rock.criterion.tensile_strength
     for _ in ti.static(range(SWEEPS)):
-        opening[0] = law.opening(shut[0] - lam * opening[1], tension[0], widest[0], M)
-        opening[1] = law.opening(shut[1] - lam * opening[0], tension[1], widest[1], M)
+        opening[0] = law.opening(shut[0] - lam * opening[1], left[0], widest[0], M)
+        opening[1] = law.opening(shut[1] - lam * opening[0], left[1], widest[1], M)
     particles.opening[p] = opening
     particles.widest[p] = ti.max(widest, opening)
     return shut - ti.Vector(
@@ -98,8 +118,10 @@ def slip_on_crack(sim: ti.template(), p, s, left):
     the hyperbola of Carol, Prat & Lopez (1997), J. Eng. Mech. 123:765, eq. 3. No shear while the crack opens, where
     s_nn = f, so that no fracture energy is spent twice; friction |s_nn| tan(phi_r) when nothing is left.
     """
-    particles, law, criterion = sim.particles, sim.rock.after_failure, sim.rock.criterion
-    c, f = left[0] * criterion.cohesion, left[0] * criterion.tensile_strength
+    particles, law = sim.particles, sim.rock.after_failure
+    full = strengths(sim, p)
+    f = left[0]
+    c = full[1] * f / full[0]  # cohesion of the crack is lost with its tensile strength
     reach, vertex = c - s[0] * law.tan_residual, c - f * law.tan_residual
     limit = ti.sqrt(ti.max(reach * reach - vertex * vertex, 0.0))
     limit = ti.select(s[0] < f, limit, 0.0)
@@ -111,14 +133,15 @@ def slip_on_crack(sim: ti.template(), p, s, left):
 
 
 @ti.func
-def slip_everywhere(sim: ti.template(), p, s, share):
-    """Mohr-Coulomb of crushed rock on every plane, with `share` of its cohesion left, at constant volume.
+def slip_everywhere(sim: ti.template(), p, s, cohesion):
+    """Mohr-Coulomb of crushed rock on every plane, with what is left of its cohesion, at constant volume.
 
     In the plane the mean stress stays and the radius shrinks; sigma_zz is then held to what the envelope allows.
     """
     particles, law, criterion = sim.particles, sim.rock.after_failure, sim.rock.criterion
+    share = cohesion / strengths(sim, p)[1]
     sin_phi = law.sin_residual + (criterion.sin_phi - law.sin_residual) * share
-    c_cos_phi = share * criterion.cohesion * ti.sqrt(1.0 - sin_phi * sin_phi)
+    c_cos_phi = cohesion * ti.sqrt(1.0 - sin_phi * sin_phi)
     centre, half = 0.5 * (s[0] + s[1]), 0.5 * (s[0] - s[1])
     radius = ti.sqrt(half * half + s[3] * s[3])
     most = ti.max(c_cos_phi - centre * sin_phi, 0.0)
@@ -148,8 +171,8 @@ def release(sim: ti.template(), p, G):
         if particles.mode[p] == 1:
             s = slip_on_crack(sim, p, s, left)
     if particles.mode[p] == 1:
-        extremes = extreme_principals(s)
-        if sim.rock.criterion.shear_load(extremes[0], extremes[1]) >= 1.0:
+        load = load_factors(sim, p, extreme_principals(s))
+        if sim.rock.criterion.shear_load(load[0], load[1]) >= 1.0:
             start_crack(sim, p, 2, particles.crack_angle[p])
             left = strength_left(sim, p)
     if particles.mode[p] == 2:

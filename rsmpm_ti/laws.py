@@ -13,6 +13,7 @@ import taichi as ti
 from rsmpm_ti.averaging import Local, Nonlocal
 from rsmpm_ti.directional import Directional
 from rsmpm_ti.errors import refuse
+from rsmpm_ti.heterogeneity import Uniform, Weibull
 from rsmpm_ti.tensors import double_contraction, hughes_winget, isotropic, trace
 
 
@@ -257,7 +258,7 @@ class NoViscosity:
 @ti.data_oriented
 @dataclass(frozen=True, kw_only=True)
 class Rock:
-    """One rock: density [kg/m^3] and the four laws it is made of."""
+    """One rock: density [kg/m^3], the four laws it is made of, and how its strength varies from place to place."""
 
     density: float
     elasticity: Hooke
@@ -265,6 +266,7 @@ class Rock:
     after_failure: CompressionOnly | Void | Clipped | Directional = CompressionOnly()
     viscosity: BulkViscosity | NoViscosity = BulkViscosity()
     averaging: Local | Nonlocal = Local()
+    heterogeneity: Uniform | Weibull = Uniform()
 
     def __post_init__(self):
         _positive("rock", density=self.density)

@@ -2,7 +2,7 @@
 
 import taichi as ti
 
-from rsmpm_ti.fracture import release, start_crack
+from rsmpm_ti.fracture import load_factors, release, start_crack
 from rsmpm_ti.laws import pressure_energy
 from rsmpm_ti.state import NO_SHADE
 from rsmpm_ti.tensors import extreme_principals, isotropic, principal_angle
@@ -53,10 +53,11 @@ def shaded(sim: ti.template(), p, angle):
 @ti.func
 def failure_by_own_stress(sim: ti.template(), p, extremes):
     """Mode by a particle's own stress: 0, 1 or 2. With averaging, tension is for the mean stress unless shaded."""
-    mode = sim.rock.criterion.mode(extremes[0], extremes[1])
+    load = load_factors(sim, p, extremes)
+    mode = sim.rock.criterion.mode(load[0], load[1])
     if ti.static(sim.rock.averaging.acts):
         if mode == 1 and not shaded(sim, p, principal_angle(sim.particles.sigma[p])):
-            mode = ti.select(sim.rock.criterion.shear_load(extremes[0], extremes[1]) >= 1.0, 2, 0)
+            mode = ti.select(sim.rock.criterion.shear_load(load[0], load[1]) >= 1.0, 2, 0)
     return mode
 
 
@@ -94,7 +95,8 @@ def check_failure(sim: ti.template(), p, time, slot):
     sigma, mode = particles.sigma[p], particles.mode[p]
     if mode == 0:
         extremes = extreme_principals(sigma)
-        mode = rock.criterion.mode(extremes[0], extremes[1])
+        load = load_factors(sim, p, extremes)
+        mode = rock.criterion.mode(load[0], load[1])
         if mode != 0:
             J = particles.J[p]
             particles.mode[p] = mode

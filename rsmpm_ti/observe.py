@@ -71,6 +71,7 @@ def take_snapshot(sim: Simulation, time: float) -> Snapshot:
         sigma_1=principal[:, 2],
         sigma_3=principal[:, 0],
         volume=column(particles.volume) * column(particles.J),
+        strength=column(particles.strength) if particles.varied else np.ones(n),
         failure_mode=mode,
         failure_time=failure_time,
     )

@@ -74,6 +74,7 @@ def write_vtu(path: Path, snapshot: Snapshot) -> None:
             "failure_mode": snapshot.failure_mode,
             "failure_time": snapshot.failure_time,
             "volume": snapshot.volume,
+            "strength_factor": snapshot.strength,
         },
     )
     with complete(path) as part:

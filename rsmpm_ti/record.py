@@ -8,12 +8,29 @@ import json
 import types
 import typing
 
-from rsmpm_ti import boundaries, directional, laws, regions, seeding, shape, softening, spec, starts, transfer
+from rsmpm_ti import (
+    averaging,
+    boundaries,
+    directional,
+    heterogeneity,
+    laws,
+    regions,
+    seeding,
+    shape,
+    softening,
+    spec,
+    starts,
+    transfer,
+)
 from rsmpm_ti.errors import SceneError, refuse
+
+MODULES = (
+    averaging, boundaries, directional, heterogeneity, laws, regions, seeding, shape, softening, spec, starts, transfer,
+)  # fmt: skip
 
 KNOWN = {
     name: thing
-    for module in (boundaries, directional, laws, regions, seeding, shape, softening, spec, starts, transfer)
+    for module in MODULES
     for name, thing in vars(module).items()
     if dataclasses.is_dataclass(thing) and isinstance(thing, type)
 }

@@ -43,5 +43,6 @@ class Snapshot:
     sigma_1: np.ndarray  # largest (most tensile) principal stress [Pa], [n]
     sigma_3: np.ndarray  # smallest principal stress [Pa], [n]
     volume: np.ndarray  # current volume [m^dim], [n]
+    strength: np.ndarray  # factor on the rock's cohesion and tensile strength, 1 where uniform, [n]
     failure_mode: np.ndarray  # INTACT, TENSION or SHEAR, int8 [n]
     failure_time: np.ndarray  # [s], NaN where intact, [n]

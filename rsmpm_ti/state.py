@@ -106,7 +106,7 @@ class Particles:
         self.J, self.volume = ti.field(real, count), ti.field(real, count)  # volume: initial [m^dim]
         self.id = ti.field(ti.i32, count)
         self.affine, self.viscous = scene.transfer.affine, scene.rock.viscosity.acts
-        self.breaks = scene.rock.criterion.breaks
+        self.breaks, self.varied = scene.rock.criterion.breaks, scene.rock.heterogeneity.varies
         real_fields = [self.reference, self.u, self.v, self.sigma, self.J, self.volume]
         whole_fields = [self.id]
         if self.affine:
@@ -115,6 +115,9 @@ class Particles:
         if self.viscous:
             self.q = ti.field(real, count)
             real_fields.append(self.q)
+        if self.varied:
+            self.strength = ti.field(real, count)  # factor on cohesion and tensile strength
+            real_fields.append(self.strength)
         if self.breaks:
             self.mode = ti.field(ti.i32, count)
             whole_fields.append(self.mode)
@@ -262,6 +265,9 @@ class Simulation:
         if self.averaging:
             particles.shade_angle.fill(NO_SHADE)
         particles.id.from_numpy(order.astype(np.int32))
+        if particles.varied:
+            strength = scene.rock.heterogeneity.factors(x, volume)  # one draw over all bodies
+            particles.strength.from_numpy(strength[order].astype(kind))
 
 
 def initial_velocity(scene: Scene, body_index: int, x: np.ndarray) -> np.ndarray:

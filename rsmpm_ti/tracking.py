@@ -2,7 +2,7 @@
 
 import taichi as ti
 
-from rsmpm_ti.fracture import start_crack
+from rsmpm_ti.fracture import start_crack, strengths
 from rsmpm_ti.kernels import coordinates
 from rsmpm_ti.material import record_failure, shaded
 from rsmpm_ti.smoothing import mean_stress, smooth_stress
@@ -17,7 +17,7 @@ def judge(sim: ti.template()):
         particles.overload[p] = 0.0
         if particles.mode[p] == 0:
             mean = mean_stress(sim, p)
-            load = extreme_principals(mean)[0] / sim.rock.criterion.tensile_strength
+            load = extreme_principals(mean)[0] / strengths(sim, p)[0]
             angle = principal_angle(mean)
             if load >= 1.0 and not shaded(sim, p, angle):
                 particles.overload[p] = load

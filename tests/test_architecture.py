@@ -11,9 +11,9 @@ ROOT = Path(__file__).resolve().parent.parent
 PACKAGE = ROOT / "rsmpm_ti"
 
 LAYERS = """
-    errors units snapshot tensors regions seeding shape transfer averaging softening directional laws boundaries starts spec
-    traversal state sorting fracture material node_update kernels smoothing tracking measure stepper observe drive cracks
-    summary output record paint frames library run scene verify bench
+    errors units snapshot tensors regions seeding heterogeneity shape transfer averaging softening directional laws
+    boundaries starts spec traversal state sorting fracture material node_update kernels smoothing tracking measure
+    stepper observe drive cracks summary output record paint frames library run scene verify bench
 """.split()
 """A module imports only from modules to the left of its own name."""
 
@@ -22,7 +22,7 @@ PAINT_LAYERS = "view layout chrome raster ggui figure summary movie".split()
 
 VERIFY_LAYERS = """
     case drives fe_field meshing finite_elements closed_forms exact_motion bodies relaxation waves manufactured specimen
-    cell envelope disc hole slit_field first_failure catalogue report running __main__
+    cell envelope disc hole slit_field first_failure weibull catalogue report running __main__
 """.split()
 BENCH_LAYERS = "settings yardstick speed measures front error __main__".split()
 """The same within `rsmpm_ti/verify/` and `rsmpm_ti/bench/`, which see every layer above their package's name."""
@@ -30,8 +30,8 @@ BENCH_LAYERS = "settings yardstick speed measures front error __main__".split()
 ROOMS = {"paint": PAINT_LAYERS, "verify": VERIFY_LAYERS, "bench": BENCH_LAYERS}
 
 PAINT_SEES = {"errors", "units", "snapshot"}
-WITHOUT_TAICHI = ["errors", "units", "snapshot", "regions", "seeding", "output"]
-STRATEGY_FILES = ["shape", "transfer", "laws", "boundaries"]
+WITHOUT_TAICHI = ["errors", "units", "snapshot", "regions", "seeding", "heterogeneity", "output"]
+STRATEGY_FILES = ["heterogeneity", "shape", "transfer", "laws", "boundaries"]
 MAY_INIT = {"rsmpm_ti/run.py", "tests/conftest.py"}
 VAGUE = {"util", "utils", "helper", "helpers", "manager", "managers", "engine", "engines"}
 MOST_LINES = 350

@@ -56,6 +56,10 @@ MUTATIONS = {
         ],
         "vibration",
     ),
+    "forgotten strength factor": (
+        [("material.py", "load = extremes / particles.strength[p]", "load = extremes")],
+        "weibull_size",
+    ),
     "forgotten stress out of the plane": (
         [
             (

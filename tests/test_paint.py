@@ -38,6 +38,7 @@ def snapshot(x, sigma_1=0.0, mode=None, volume=1e-6, displacement=None, time=1e-
         sigma_1=np.full(n, sigma_1),
         sigma_3=np.zeros(n),
         volume=np.full(n, volume),
+        strength=np.ones(n),
         failure_mode=mode,
         failure_time=np.where(mode > 0, 0.0, np.nan),
     )

@@ -12,11 +12,13 @@ from rsmpm_ti.verify import (
     slit_field,
     specimen,
     waves,
+    weibull,
 )
 from rsmpm_ti.verify.case import Case
 
 MODULES = (
     waves, bodies, relaxation, manufactured, specimen, envelope, cell, disc, hole, slit_field, first_failure,
+    weibull,
 )  # fmt: skip
 
 CASES: dict[str, Case] = {case.name: case for module in MODULES for case in module.CASES}
