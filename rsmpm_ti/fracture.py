@@ -49,6 +49,13 @@ def strength_left(sim: ti.template(), p):
 
 
 @ti.func
+def strength_share(sim: ti.template(), p, mode):
+    """Share of strength that a particle cracked by `mode` (1 tension, 2 shear) has left."""
+    left, full = strength_left(sim, p), strengths(sim, p)
+    return ti.select(mode == 1, left[0] / full[0], left[2] / full[1])
+
+
+@ti.func
 def start_crack(sim: ti.template(), p, mode, angle):
     """Mark a particle as failed in tension (1) or shear (2), with the normal of its crack at `angle` [rad]."""
     particles = sim.particles

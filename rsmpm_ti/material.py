@@ -2,7 +2,7 @@
 
 import taichi as ti
 
-from rsmpm_ti.fracture import load_factors, release, start_crack
+from rsmpm_ti.fracture import load_factors, release, start_crack, strength_share
 from rsmpm_ti.laws import pressure_energy
 from rsmpm_ti.state import NO_SHADE
 from rsmpm_ti.tensors import extreme_principals, isotropic, principal_angle
@@ -19,8 +19,6 @@ def record_failure(sim: ti.template(), p, mode, extremes, released, time):
     events.released[e] = released
     events.mode[e] = mode
     events.id[e] = particles.id[p]
-    if ti.static(particles.cracks):
-        events.angle[e] = particles.crack_angle[p]
 
 
 @ti.func
@@ -63,13 +61,13 @@ def failure_by_own_stress(sim: ti.template(), p, extremes):
 
 @ti.func
 def check_and_release(sim: ti.template(), p, dt, time, slot):
-    """The failure check for rock that cracks with a direction, and the stress of what has cracked."""
+    """The failure check for rock that cracks with a direction, and the stress of what has cracked.
+
+    The event is when half of the strength is lost: at once without fracture energy.
+    """
     particles = sim.particles
-    old = particles.mode[p]
-    extremes = ti.Vector([0.0, 0.0])
-    if old != 2:
-        extremes = extreme_principals(particles.sigma[p])
-    if old == 0:
+    extremes = extreme_principals(particles.sigma[p])
+    if particles.mode[p] == 0:
         mode = failure_by_own_stress(sim, p, extremes)
         if mode != 0:
             start_crack(sim, p, mode, principal_angle(particles.sigma[p]))
@@ -79,9 +77,12 @@ def check_and_release(sim: ti.template(), p, dt, time, slot):
         sigma, lost = release(sim, p, dt * particles.L[p])
         lost *= particles.volume[p] * particles.J[p]
         particles.sigma[p] = sigma
+        particles.lost[p] = particles.lost[p] + lost
         sim.ledger.released[slot] += ti.cast(lost, ti.f64)
-        if particles.mode[p] != old:
-            record_failure(sim, p, particles.mode[p], extremes, lost, time)
+        mode = particles.mode[p]
+        if mode != particles.failed[p] and strength_share(sim, p, mode) < 0.5:
+            particles.failed[p] = mode
+            record_failure(sim, p, mode, extremes, particles.lost[p], time)
 
 
 @ti.func

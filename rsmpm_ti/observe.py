@@ -59,7 +59,7 @@ def take_snapshot(sim: Simulation, time: float) -> Snapshot:
     principal = np.linalg.eigvalsh(np.nan_to_num(sigma))
     mode, failure_time = np.zeros(n, dtype=np.int8), np.full(n, np.nan)
     if particles.breaks:
-        mode = particles.mode.to_numpy()[order].astype(np.int8)
+        mode = (particles.failed if particles.cracks else particles.mode).to_numpy()[order].astype(np.int8)
         events = read_events(sim)
         failure_time[events.id] = events.time
     return Snapshot(

@@ -12,6 +12,8 @@ def clear_means(sim: ti.template()):
     for i in ti.grouped(sim.means.sums):
         sim.means.sums[i] = zero
         sim.means.peak[i] = 0.0
+    for _ in range(1):
+        sim.means.fresh[None] = 0
 
 
 @ti.kernel

@@ -13,6 +13,9 @@ from rsmpm_ti.traversal import Chunks, Stripes
 MARGIN = 3
 """Cells of empty grid around the domain, so that no stencil leaves the arrays."""
 
+MOST_FRESH = 4096
+"""Most particles that crack by mean stress in one step; the others wait for the next."""
+
 NO_SHADE = 100.0
 """Angle [rad] beside a crack of a particle that none runs beside."""
 
@@ -126,7 +129,11 @@ class Particles:
             # angle of the crack's normal [rad]; opening strains across it and along it, and their largest; slip strain
             self.crack_angle, self.slip = ti.field(real, count), ti.field(real, count)
             self.opening, self.widest = vector(2), vector(2)
-            real_fields += [self.crack_angle, self.slip, self.opening, self.widest]
+            # energy lost so far [J]; `failed`: the mode by which half of the strength was lost, while `mode` starts
+            # with the loss
+            self.lost, self.failed = ti.field(real, count), ti.field(ti.i32, count)
+            real_fields += [self.crack_angle, self.slip, self.opening, self.widest, self.lost]
+            whole_fields.append(self.failed)
         if self.breaks and scene.rock.averaging.acts:
             # overload is of one step only; shade_angle: normal of the crack beside [rad]
             self.overload, self.shade_angle = ti.field(real, count), ti.field(real, count)
@@ -157,8 +164,6 @@ class Events:
         self.sigma_3, self.released = ti.field(real, capacity), ti.field(real, capacity)
         self.x = ti.Vector.field(scene.dim, real, capacity)
         self.mode, self.id = ti.field(ti.i32, capacity), ti.field(ti.i32, capacity)
-        if scene.rock.after_failure.directional:
-            self.angle = ti.field(real, capacity)
 
 
 @ti.data_oriented
@@ -171,7 +176,8 @@ class Means:
         self.taps.from_numpy(np.array(taps))
         self.sums, self.other = (ti.Vector.field(5, real, grid.nodes) for _ in range(2))
         self.peak = ti.field(real, grid.nodes)
-        self.seen = ti.field(ti.i32, ())  # events whose shade has been cast
+        # cracked particles whose shade has not been cast yet: place and angle of the crack's normal
+        self.fresh, self.x, self.angle = ti.field(ti.i32, ()), ti.Vector.field(2, real, MOST_FRESH), ti.field(real, MOST_FRESH)
 
 
 @ti.data_oriented

@@ -75,6 +75,6 @@ class Clock:
             factor = self.factor(self.time + 0.5 * self.dt)
             self._pass_list(self._sim, self.dt, self.time + self.dt, factor)
             if self._sim.averaging:
-                track_cracks(self._sim, self.time + self.dt)
+                track_cracks(self._sim)
             self.strain += factor * self.strain_rate * self.dt
             self.step += 1

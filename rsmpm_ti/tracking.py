@@ -4,8 +4,9 @@ import taichi as ti
 
 from rsmpm_ti.fracture import start_crack, strengths
 from rsmpm_ti.kernels import coordinates
-from rsmpm_ti.material import record_failure, shaded
+from rsmpm_ti.material import shaded
 from rsmpm_ti.smoothing import mean_stress, smooth_stress
+from rsmpm_ti.state import MOST_FRESH
 from rsmpm_ti.tensors import extreme_principals, principal_angle
 
 
@@ -28,7 +29,8 @@ def judge(sim: ti.template()):
 
 
 @ti.kernel
-def fail_most_overloaded(sim: ti.template(), time: ti.f64):
+def crack_most_overloaded(sim: ti.template()):
+    """Start a crack in every particle that none of its neighbours exceeds."""
     particles = sim.particles
     for p in particles.mode:
         load = particles.overload[p]
@@ -38,35 +40,35 @@ def fail_most_overloaded(sim: ti.template(), time: ti.f64):
             for offset in ti.static(sim.stencil):
                 most = ti.max(most, sim.means.peak[base + ti.Vector(offset)])
             if load >= most:
-                start_crack(sim, p, 1, particles.crack_angle[p])
-                if ti.static(particles.viscous):
-                    particles.q[p] = 0.0
-                record_failure(sim, p, 1, extreme_principals(particles.sigma[p]), 0.0, time)
+                k = ti.atomic_add(sim.means.fresh[None], 1)
+                if k < MOST_FRESH:
+                    sim.means.x[k] = particles.reference[p] + particles.u[p]
+                    sim.means.angle[k] = particles.crack_angle[p]
+                    start_crack(sim, p, 1, particles.crack_angle[p])
+                    if ti.static(particles.viscous):
+                        particles.q[p] = 0.0
 
 
 @ti.kernel
 def shade(sim: ti.template()):
-    """Mark what lies beside the cracks that were recorded since the last call."""
-    particles, events = sim.particles, sim.events
+    """Mark what lies beside the cracks that have just begun."""
+    particles, fresh = sim.particles, sim.means
     radius, slope = ti.static(sim.rock.averaging.radius, sim.rock.averaging.slope)
+    count = ti.min(fresh.fresh[None], MOST_FRESH)
     for p in particles.mode:
         if particles.mode[p] == 0:
             x = particles.reference[p] + particles.u[p]
-            for e in range(sim.means.seen[None], events.count[None]):
-                if events.mode[e] == 1:
-                    d = x - events.x[e]
-                    if d.norm() < radius:
-                        n = ti.Vector([ti.cos(events.angle[e]), ti.sin(events.angle[e])])
-                        across, along = ti.abs(d.dot(n)), ti.abs(d[0] * n[1] - d[1] * n[0])
-                        if across > slope * along:
-                            particles.shade_angle[p] = events.angle[e]
-    for _ in range(1):
-        sim.means.seen[None] = events.count[None]
+            for k in range(count):
+                d = x - fresh.x[k]
+                if d.norm() < radius:
+                    n = ti.Vector([ti.cos(fresh.angle[k]), ti.sin(fresh.angle[k])])
+                    if ti.abs(d.dot(n)) > slope * ti.abs(d[0] * n[1] - d[1] * n[0]):
+                        particles.shade_angle[p] = fresh.angle[k]
 
 
-def track_cracks(sim, time: float) -> None:
+def track_cracks(sim) -> None:
     """The tensile check by the mean stress, after a step."""
     smooth_stress(sim)
     judge(sim)
-    fail_most_overloaded(sim, time)
+    crack_most_overloaded(sim)
     shade(sim)
