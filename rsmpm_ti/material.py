@@ -2,7 +2,7 @@
 
 import taichi as ti
 
-from rsmpm_ti.fracture import load_factors, release, start_crack, strength_share
+from rsmpm_ti.crack_stress import load_factors, release, start_crack, strength_share
 from rsmpm_ti.laws import pressure_energy
 from rsmpm_ti.state import NO_SHADE
 from rsmpm_ti.tensors import extreme_principals, isotropic, principal_angle

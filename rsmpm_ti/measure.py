@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 import taichi as ti
 
-from rsmpm_ti.fracture import spring_energy
+from rsmpm_ti.crack_stress import spring_energy
 from rsmpm_ti.laws import pressure_energy
 from rsmpm_ti.sorting import cell_key, row_of_key
 from rsmpm_ti.state import SCALARS, Simulation

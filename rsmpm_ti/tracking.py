@@ -2,7 +2,7 @@
 
 import taichi as ti
 
-from rsmpm_ti.fracture import start_crack, strengths
+from rsmpm_ti.crack_stress import start_crack, strengths
 from rsmpm_ti.kernels import coordinates
 from rsmpm_ti.material import shaded
 from rsmpm_ti.smoothing import mean_stress, smooth_stress

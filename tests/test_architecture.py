@@ -12,7 +12,7 @@ PACKAGE = ROOT / "rsmpm_ti"
 
 LAYERS = """
     errors units snapshot tensors regions seeding heterogeneity shape transfer averaging softening directional laws
-    boundaries starts spec traversal state sorting fracture material node_update kernels smoothing tracking measure
+    boundaries starts spec traversal state sorting crack_stress material node_update kernels smoothing tracking measure
     stepper observe drive cracks summary output record paint frames library run scene verify bench
 """.split()
 """A module imports only from modules to the left of its own name."""
