@@ -11,9 +11,9 @@ ROOT = Path(__file__).resolve().parent.parent
 PACKAGE = ROOT / "rsmpm_ti"
 
 LAYERS = """
-    errors units snapshot tensors regions seeding shape transfer laws boundaries starts spec traversal state sorting
-    material node_update kernels measure stepper observe drive cracks summary output record paint frames library run
-    scene verify bench
+    errors units snapshot tensors regions seeding shape transfer laws confinement boundaries starts spec traversal
+    state sorting material node_update kernels measure stepper observe drive cracks summary output record paint frames
+    library run scene verify bench
 """.split()
 """A module imports only from modules to the left of its own name."""
 
