@@ -11,12 +11,13 @@ from rsmpm_ti.verify import (
     relaxation,
     slit_field,
     specimen,
+    triaxial,
     waves,
 )
 from rsmpm_ti.verify.case import Case
 
 MODULES = (
-    waves, bodies, relaxation, manufactured, specimen, envelope, cell, disc, hole, slit_field, first_failure,
+    waves, bodies, relaxation, manufactured, specimen, triaxial, envelope, cell, disc, hole, slit_field, first_failure,
 )  # fmt: skip
 
 CASES: dict[str, Case] = {case.name: case for module in MODULES for case in module.CASES}
