@@ -50,7 +50,7 @@ def specimen(p: float, dim: int = 2, **parts) -> Scene:
     """A specimen, 4 x 8 mm with a hole or 3 x 3 x 6 mm without one, pressed without failure or viscosity."""
     size = (4 * DX, 8 * DX) if dim == 2 else (3 * DX, 3 * DX, 6 * DX)
     whole = Box(lower=(0.0,) * dim, upper=size)
-    hole = Disc(centre=(2.2 * DX, 4.0 * DX), radius=1.1 * DX)
+    hole = Disc(centre=(2.2 * DX, 3.0 * DX), radius=1.1 * DX)
     region = Difference(whole=whole, removed=(hole,)) if dim == 2 else whole
     axis = dim - 1
     platens = (
@@ -78,7 +78,7 @@ class Pressed:
 def press(its: Scene) -> Pressed:
     """Press to the end. Without confinement the pressure that kernels could read is no number."""
     drive = set_up(its)
-    if not drive.sim.confined:
+    if its.loading.confinement == 0.0:
         drive.sim.confinement = math.nan
     history = History(drive.sim, drive.clock, drive.survey)
     while not drive.clock.done:
@@ -159,7 +159,8 @@ def test_elastic_specimen_under_pressure_bears_the_stress_without_it_and_the_pre
     for column in ("stress_top_Pa", "stress_bottom_Pa"):
         np.testing.assert_allclose(held.rows[column] - P, free.rows[column], rtol=0.0, atol=1e-9 * largest)
     for name in ("apparent_modulus_Pa", "platen_imbalance", "platen_imbalance_max"):
-        assert held.summary[name] == pytest.approx(free.summary[name], rel=1e-6, abs=1e-9), name
+        assert held.summary[name] == pytest.approx(free.summary[name], rel=1e-6), name
+    assert free.summary["platen_imbalance"] > 1e-4  # the hole sits low, so there is something to compare
     assert (free.summary["confinement_Pa"], held.summary["confinement_Pa"]) == (0.0, P)
 
 
