@@ -56,6 +56,10 @@ MUTATIONS = {
         ],
         "vibration",
     ),
+    "confined rock without stress out of the plane": (
+        [("state.py", "packed[:, :3] = -self.confinement", "packed[:, :2] = -self.confinement")],
+        "triaxial",
+    ),
     "forgotten stress out of the plane": (
         [
             (

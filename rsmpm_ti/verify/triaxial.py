@@ -86,7 +86,7 @@ def _test(p: float, steps: int) -> Tested:
     history = History(drive.sim, drive.clock, drive.survey)
     every = max(1, steps // 200)
     middle = None
-    while not (drive.clock.done or history.failed):
+    while not drive.clock.done and (middle is None or not history.failed):
         drive.advance(every)
         history.record(drive.survey)
         if middle is None and drive.clock.step >= HALF_WAY * steps / 1.02:
