@@ -8,6 +8,7 @@ import pytest
 import taichi as ti
 from exact import p_wave_speed
 
+from rsmpm_ti import load_scene, simulate
 from rsmpm_ti.boundaries import Platen, Wall
 from rsmpm_ti.errors import SceneError
 from rsmpm_ti.frames import load_limits
@@ -249,3 +250,16 @@ def test_rock_that_cannot_be_confined_is_refused():
     with pytest.raises(SceneError, match=r"loading\.confinement = .* at most 0\.1 of the bulk modulus, 7\.87e\+08 Pa"):
         scene(region, Loading(confinement=0.101 * BULK))
     assert scene(region, Loading(confinement=0.099 * BULK)).loading.confinement > 0.0
+
+
+def test_confinement_delays_and_shortens_the_wings_of_a_flaw():
+    """The flaw's edge must feel p more tension, so failure needs (sigma_t + p)/sigma_t = 2 times the added stress."""
+    coarse = {"dx": 2e-3, "flaw_width": 6e-3, "time_scale": 16.0}
+    free = simulate(load_scene("confined", **coarse, confinement=0.0, strain_end=1.3e-4), threads=1)
+    held = simulate(load_scene("confined", **coarse, confinement=2e6, strain_end=4e-4), threads=1)
+    added = held.summary["first_failure_stress_Pa"] - 2e6
+    # 5 % each: waves of a run with mass scaling decide when a particle at the limit goes
+    assert added == pytest.approx(2.0 * free.summary["first_failure_stress_Pa"], rel=0.1)
+    assert held.summary["failed_tension"] > 10 and held.summary["failed_shear"] == 0
+    assert np.abs(held.events.x[:, 1] - 50e-3).max() < 15e-3  # the flaw itself reaches 5.3 mm, without p 50 mm are lost
+    assert held.summary["energy_balance_error"] < 0.01
