@@ -128,7 +128,7 @@ def stress_limit(scene: Scene, load: float | None) -> float:
 def load_limits(scene: Scene, volume: float) -> tuple[float | None, float | None]:
     """Ends of the inset's axes: the last strain, and the nominal stress of a uniformly strained body of this volume.
 
-    That is an upper bound of the elastic load (Voigt); the uniaxial strength bounds it too.
+    That is an upper bound of the elastic load (Voigt); the strength bounds it too. Confinement adds its pressure.
     """
     if scene.loading.platens is None or scene.loading.width is None:
         return None, None
@@ -139,6 +139,7 @@ def load_limits(scene: Scene, volume: float) -> tuple[float | None, float | None
         * volume
         / (scene.loading.height * scene.loading.width)
     )
+    load += scene.loading.confinement
     if isinstance(scene.rock.criterion, MohrCoulomb):
-        load = min(load, 1.05 * scene.rock.criterion.ucs)
+        load = min(load, 1.05 * scene.rock.criterion.strength(scene.loading.confinement))
     return strain, load

@@ -73,10 +73,10 @@ def same_run(sim: ti.template(), xi, base):
 
 @ti.func
 def p2g_span(sim: ti.template(), start, stop, momentum: ti.template(), force: ti.template(), time):
-    """m_i = sum w_ip m_p, (mv)_i = sum w_ip m_p v_p, f_i = -sum V_p (sigma_p - q) grad w_ip (paper eq. 7-9).
+    """m_i = sum w_ip m_p, (mv)_i = sum w_ip m_p v_p, f_i = -sum V_p (sigma_p - q + p) grad w_ip (paper eq. 7-9).
 
-    Eq. 9 of the paper says deviatoric stress; the total stress is meant. A force field adds w_ip m_p b(X_p, time);
-    a uniform body force is added at the nodes, where it costs less.
+    Eq. 9 of the paper says deviatoric stress; the total stress is meant, and p is the confining pressure. A force field
+    adds w_ip m_p b(X_p, time); a uniform body force is added at the nodes, where it costs less.
     """
     particles, nodes, grid = sim.particles, sim.nodes, sim.grid
     p = start
@@ -93,6 +93,8 @@ def p2g_span(sim: ti.template(), start, stop, momentum: ti.template(), force: ti
             sigma = particles.sigma[p]
             if ti.static(particles.viscous):
                 sigma -= isotropic(particles.q[p], sigma.n)
+            if ti.static(sim.confined):
+                sigma += isotropic(sim.confinement, sigma.n)  # the pressure on every surface: confinement.py
             b_p = ti.Vector.zero(float, sim.dim)
             if ti.static(sim.driven and force):
                 b_p = field_acceleration(sim, p, time)

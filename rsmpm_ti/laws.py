@@ -145,6 +145,10 @@ class MohrCoulomb:
         """Uniaxial compressive strength 2 c cos(phi)/(1 - sin(phi)) [Pa]."""
         return 2.0 * self.c_cos_phi / (1.0 - self.sin_phi)
 
+    def strength(self, confinement: float) -> float:
+        """Axial stress at failure under a lateral pressure [Pa]: UCS + (1 + sin(phi))/(1 - sin(phi)) confinement."""
+        return self.ucs + (1.0 + self.sin_phi) / (1.0 - self.sin_phi) * confinement
+
     @ti.func
     def mode(self, sigma_1, sigma_3):
         """0 intact, 1 tension, 2 shear."""

@@ -29,7 +29,7 @@ class Survey:
     far_strays: int  # those among them that are more than half a cell beyond its row
     momentum: np.ndarray  # [kg m/s], [dim]
     impulse: np.ndarray  # of each boundary on the body since the start [N s], [boundaries, dim]
-    work: float  # of boundaries and body force since the start [J]
+    work: float  # of boundaries, body force and confining pressure since the start [J]
     dissipated: float  # by failure and viscosity since the start [J]
     failed_tension: int
     failed_shear: int
@@ -69,6 +69,8 @@ def _survey(sim: ti.template()):
         else:
             report.kinetic[None] += ti.cast(0.5 * m_p * v.dot(v), ti.f64)
             report.elastic[None] += ti.cast(particles.volume[p] * stored, ti.f64)
+            if ti.static(sim.confined):  # the pressure's work: p times the volume that the bodies gave way
+                report.work[None] += ti.cast(sim.confinement * particles.volume[p] * (sim.J_start - J), ti.f64)
             ti.atomic_max(report.speed[None], ti.cast(v.norm(), ti.f64))
             ti.atomic_min(report.J_min[None], ti.cast(J, ti.f64))
             ti.atomic_max(report.J_max[None], ti.cast(J, ti.f64))

@@ -78,7 +78,11 @@ def take_snapshot(sim: Simulation, time: float) -> Snapshot:
 
 
 class History:
-    """The rows of history.csv. Platen stress is the mean over the steps since the row before."""
+    """The rows of history.csv. Platen stress is the mean over the steps since the row before.
+
+    It is the mean axial stress of a section of the loaded width: platen force over width, and the confining pressure,
+    which the platens do not read (see `confinement.py`) and which the rest of such a section's end feels too.
+    """
 
     def __init__(self, sim: Simulation, clock: Clock, start: Survey):
         self._sim, self._clock = sim, clock
@@ -103,7 +107,8 @@ class History:
             axis = loading.platens[0].axis
             force = (survey.impulse - self._impulse)[:, axis] / (clock.time - self._time) / loading.width
             # the lower plate pushes the specimen along +axis in compression, the upper one along -axis
-            bottom, top = force[self._platens[0]], -force[self._platens[1]]
+            bottom = loading.confinement + force[self._platens[0]]
+            top = loading.confinement - force[self._platens[1]]
         self.rows.append(
             (
                 clock.time, clock.strain, top, bottom, survey.kinetic, survey.elastic, survey.dissipated, survey.work,

@@ -20,6 +20,7 @@ HISTORY_COLUMNS = (
 """Columns of `history.csv` and fields of the structured array `Result.history`, all float64.
 
 Strain and the two stresses are compression positive, as tests report them; energies are per metre of thickness in 2D.
+Under confinement stress is the whole axial stress, and strain and work count from the confined state.
 """
 
 INTACT, TENSION, SHEAR = 0, 1, 2

@@ -9,6 +9,7 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from rsmpm_ti.boundaries import Fixed, Platen, Wall
+from rsmpm_ti.confinement import check_confined_rock, check_confinement
 from rsmpm_ti.directional import check_cracks
 from rsmpm_ti.errors import SceneError, refuse
 from rsmpm_ti.laws import Rock, Unbreakable
@@ -83,6 +84,7 @@ class Loading:
     body_force is an acceleration [m/s^2]; mass scaling leaves the force it makes unchanged. `force_field` is one that
     depends on place and time: an object with a ti.func `acceleration(X, t)` of a particle's initial position [m] and
     the time [s]. A scene file brings its own, so a scene with one cannot be run again from its record.
+    confinement is a pressure [Pa] on every free surface, in which bodies start at rest (see `confinement.py`).
     """
 
     boundaries: tuple[Platen | Wall | Fixed, ...] = ()
@@ -91,6 +93,7 @@ class Loading:
     body_force: tuple[float, ...] | None = None
     force_field: object | None = None
     width: float | None = None
+    confinement: float = 0.0
 
     def __post_init__(self):
         if not (math.isfinite(self.time_scale) and 1.0 <= self.time_scale <= 1000.0):
@@ -101,6 +104,7 @@ class Loading:
             raise refuse("loading.force_field", self.force_field, "an object with a ti.func acceleration(X, t)")
         if self.width is not None and not (math.isfinite(self.width) and self.width > 0.0):
             raise refuse("loading.width", self.width, "a positive length in metres")
+        check_confinement(self.confinement)
 
     @property
     def platens(self) -> tuple[Platen, Platen] | None:
@@ -204,6 +208,7 @@ class Scene:
             )
         if self.dim == 3 and self.rock.elasticity.plane_stress:
             raise refuse("rock.elasticity.plane_stress", True, "False in 3D", "a plate is a 2D scene")
+        check_confined_rock(self.loading.confinement, self.rock.elasticity)
         self._check_bodies()
         self._check_loading()
         check_cracks(self.rock, self.shape, self.dim, self.domain.dx)

@@ -3,6 +3,7 @@
 import numpy as np
 import taichi as ti
 
+from rsmpm_ti.confinement import confined_volume_ratio
 from rsmpm_ti.errors import SceneError
 from rsmpm_ti.seeding import Seeds
 from rsmpm_ti.shape import offsets
@@ -106,7 +107,7 @@ class Particles:
         self.reference, self.u, self.v = vector(dim), vector(dim), vector(dim)
         self.sigma = vector(PACKED_LENGTH[dim])
         self.L = ti.Matrix.field(dim, dim, real, count, layout=ti.Layout.SOA)  # within a step only: grad v [1/s]
-        self.J, self.volume = ti.field(real, count), ti.field(real, count)  # volume: initial [m^dim]
+        self.J, self.volume = ti.field(real, count), ti.field(real, count)  # volume: stress-free [m^dim]
         self.id = ti.field(ti.i32, count)
         self.affine, self.viscous = scene.transfer.affine, scene.rock.viscosity.acts
         self.breaks, self.varied = scene.rock.criterion.breaks, scene.rock.heterogeneity.varies
@@ -177,7 +178,11 @@ class Means:
         self.sums, self.other = (ti.Vector.field(5, real, grid.nodes) for _ in range(2))
         self.peak = ti.field(real, grid.nodes)
         # cracked particles whose shade has not been cast yet: place and angle of the crack's normal
-        self.fresh, self.x, self.angle = ti.field(ti.i32, ()), ti.Vector.field(2, real, MOST_FRESH), ti.field(real, MOST_FRESH)
+        self.fresh, self.x, self.angle = (
+            ti.field(ti.i32, ()),
+            ti.Vector.field(2, real, MOST_FRESH),
+            ti.field(real, MOST_FRESH),
+        )
 
 
 @ti.data_oriented
@@ -232,8 +237,12 @@ class Simulation:
         self.boundaries = scene.loading.boundaries
         self.stencil = offsets(scene.shape, scene.dim)
         self.size = len(self.stencil)  # nodes of a stencil
-        self.density, self.wave_speed = scene.density, scene.wave_speed
         self.band = scene.shape.crack_band * scene.domain.dx
+        self.confinement = scene.loading.confinement
+        self.confined = self.confinement > 0.0
+        self.J_start = confined_volume_ratio(self.confinement, scene.rock.elasticity)
+        # of the stress-free rock, to go with `particles.volume`; under the confinement it is the scene's
+        self.density, self.wave_speed = scene.density * self.J_start, scene.wave_speed
         # mass scaling must leave the weight of a body unchanged, so its acceleration shrinks as its density grows
         force = scene.loading.body_force or (0.0,) * scene.dim
         self.heavy = any(component != 0.0 for component in force)
@@ -266,10 +275,14 @@ class Simulation:
         order = np.argsort(np.ravel_multi_index(base.T, self.grid.nodes, mode="clip"), kind="stable")
         particles.reference.from_numpy(x[order].astype(kind))
         particles.v.from_numpy(v[order].astype(kind))
-        particles.volume.from_numpy(volume[order].astype(kind))
-        particles.J.fill(1.0)
         if self.averaging:
             particles.shade_angle.fill(NO_SHADE)
+        particles.volume.from_numpy((volume[order] / self.J_start).astype(kind))
+        particles.J.fill(self.J_start)
+        if self.confined:
+            packed = np.zeros((len(x), PACKED_LENGTH[self.dim]), dtype=kind)
+            packed[:, :3] = -self.confinement
+            particles.sigma.from_numpy(packed)
         particles.id.from_numpy(order.astype(np.int32))
         if particles.varied:
             strength = scene.rock.heterogeneity.factors(x, volume)  # one draw over all bodies

@@ -16,7 +16,12 @@ SYMMETRY_LENGTH = 15e-3
 
 
 def summarise(scene: Scene, history: np.ndarray, events: EventTable, energy_start: float) -> dict:
-    """The physical part of summary.json. Stresses [Pa], lengths [m], angles [degrees]; None where not defined."""
+    """The physical part of summary.json. Stresses [Pa], lengths [m], angles [degrees]; None where not defined.
+
+    Under confinement axial stresses are whole ones, the pressure included, and strains count from the confined state;
+    the modulus is still the slope. The platen imbalance is over what the platens add, the kinetic share over all the
+    elastic energy, that of the confinement included.
+    """
     stress = 0.5 * (history["stress_top_Pa"] + history["stress_bottom_Pa"])
     time = history["time_s"]
     # a row's stress is the mean since the row before, so it belongs to the middle of that interval
@@ -25,6 +30,7 @@ def summarise(scene: Scene, history: np.ndarray, events: EventTable, energy_star
     first = float(events.time[0]) if len(events) else np.inf
     before = time < first
     out = {
+        "confinement_Pa": scene.loading.confinement,
         "first_failure_stress_Pa": None,
         "first_failure_strain": None,
         "first_failure_time_s": None,
@@ -40,14 +46,14 @@ def summarise(scene: Scene, history: np.ndarray, events: EventTable, energy_star
         out["first_failure_time_s"] = first
         out["first_failure_mode"] = MODE_NAMES[events.mode[0]]
         out["first_failure_position_m"] = events.x[0].tolist()
-    out |= _stress_numbers(stress, strain, middle, before, first, history)
+    out |= _stress_numbers(stress, strain, middle, before, first, history, scene.loading.confinement)
     out |= _energy_numbers(history, before, energy_start)
     if scene.dim == 2:
         out |= _crack_numbers(scene, events)
     return out
 
 
-def _stress_numbers(stress, strain, middle, before, first, history) -> dict:
+def _stress_numbers(stress, strain, middle, before, first, history, confinement) -> dict:
     names = ("apparent_modulus_Pa", "peak_stress_Pa", "platen_imbalance", "platen_imbalance_max", "kinetic_share")
     out = dict.fromkeys(names)
     if len(stress) < 2 or not np.isfinite(stress).all():
@@ -63,13 +69,14 @@ def _stress_numbers(stress, strain, middle, before, first, history) -> dict:
         out["first_failure_stress_Pa"] = float(np.polyval(np.polyfit(middle[k], stress[k], 1), first))
         out["first_failure_strain"] = float(np.polyval(np.polyfit(middle[k], strain[k], 1), first))
     difference = np.abs(history["stress_top_Pa"] - history["stress_bottom_Pa"])
-    if before.any() and np.abs(stress[before]).mean() > 0.0:
-        out["platen_imbalance"] = float(difference[before].mean() / np.abs(stress[before]).mean())
+    added = np.abs(stress - confinement)
+    if before.any() and added[before].mean() > 0.0:
+        out["platen_imbalance"] = float(difference[before].mean() / added[before].mean())
         # with the Affine start both platens feel the same by symmetry, so the imbalance alone proves little: this
         # second measure sees motion inside the specimen too
         out["kinetic_share"] = float(history["energy_kinetic_J"][before][-1] / history["energy_elastic_J"][before][-1])
-        loaded = before & (np.abs(stress) > 0.1 * np.abs(stress[before]).max())
-        out["platen_imbalance_max"] = float((difference[loaded] / np.abs(stress[loaded])).max())
+        loaded = before & (added > 0.1 * added[before].max())
+        out["platen_imbalance_max"] = float((difference[loaded] / added[loaded]).max())
     return out
 
 

@@ -12,7 +12,7 @@ PACKAGE = ROOT / "rsmpm_ti"
 
 LAYERS = """
     errors units snapshot tensors regions seeding heterogeneity shape transfer averaging softening directional laws
-    boundaries starts spec traversal state sorting crack_stress material node_update kernels smoothing tracking measure
+    confinement boundaries starts spec traversal state sorting crack_stress material node_update kernels smoothing tracking measure
     stepper observe drive cracks summary output record paint frames library run scene verify bench
 """.split()
 """A module imports only from modules to the left of its own name."""
@@ -22,7 +22,7 @@ PAINT_LAYERS = "view layout chrome raster ggui figure summary movie".split()
 
 VERIFY_LAYERS = """
     case drives fe_field meshing finite_elements closed_forms exact_motion bodies relaxation waves manufactured specimen
-    cell envelope disc hole slit_field first_failure weibull catalogue report running __main__
+    triaxial cell envelope disc hole slit_field first_failure weibull catalogue report running __main__
 """.split()
 BENCH_LAYERS = "settings yardstick speed measures front error __main__".split()
 """The same within `rsmpm_ti/verify/` and `rsmpm_ti/bench/`, which see every layer above their package's name."""

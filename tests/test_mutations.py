@@ -57,8 +57,12 @@ MUTATIONS = {
         "vibration",
     ),
     "forgotten strength factor": (
-        [("material.py", "load = extremes / particles.strength[p]", "load = extremes")],
+        [("crack_stress.py", "load = extremes / sim.particles.strength[p]", "load = extremes")],
         "weibull_size",
+    ),
+    "confined rock without stress out of the plane": (
+        [("state.py", "packed[:, :3] = -self.confinement", "packed[:, :2] = -self.confinement")],
+        "triaxial",
     ),
     "forgotten stress out of the plane": (
         [

@@ -11,13 +11,14 @@ from rsmpm_ti.verify import (
     relaxation,
     slit_field,
     specimen,
+    triaxial,
     waves,
     weibull,
 )
 from rsmpm_ti.verify.case import Case
 
 MODULES = (
-    waves, bodies, relaxation, manufactured, specimen, envelope, cell, disc, hole, slit_field, first_failure,
+    waves, bodies, relaxation, manufactured, specimen, triaxial, envelope, cell, disc, hole, slit_field, first_failure,
     weibull,
 )  # fmt: skip
 
