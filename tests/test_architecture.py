@@ -12,8 +12,8 @@ PACKAGE = ROOT / "rsmpm_ti"
 
 LAYERS = """
     errors units snapshot tensors regions seeding shape transfer laws boundaries starts spec traversal state sorting
-    material node_update kernels measure stepper observe drive cracks summary output record paint frames library run
-    scene verify bench
+    material node_update kernels measure stepper observe drive nominal crack_path cracks flaw_tips crack_growth aperture
+    crack_bands fragments emission summary output fracture record paint frames library run scene verify bench
 """.split()
 """A module imports only from modules to the left of its own name."""
 
@@ -30,7 +30,10 @@ BENCH_LAYERS = "settings yardstick speed measures front error __main__".split()
 ROOMS = {"paint": PAINT_LAYERS, "verify": VERIFY_LAYERS, "bench": BENCH_LAYERS}
 
 PAINT_SEES = {"errors", "units", "snapshot"}
-WITHOUT_TAICHI = ["errors", "units", "snapshot", "regions", "seeding", "output"]
+WITHOUT_TAICHI = """
+    errors units snapshot regions seeding output nominal crack_path cracks flaw_tips crack_growth aperture crack_bands
+    fragments emission
+""".split()
 STRATEGY_FILES = ["shape", "transfer", "laws", "boundaries"]
 MAY_INIT = {"rsmpm_ti/run.py", "tests/conftest.py"}
 VAGUE = {"util", "utils", "helper", "helpers", "manager", "managers", "engine", "engines"}
