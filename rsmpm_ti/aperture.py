@@ -14,21 +14,23 @@ FEWEST = 6
 """A plane through fewer particles than this is no fit."""
 
 
-def jumps(path: np.ndarray, x: np.ndarray, displacement: np.ndarray, dx: float) -> np.ndarray:
-    """Opening (positive apart) and slip [m] at each point of a path [k, 2], shape [k, 2]; NaN where a side is missing.
+def jumps(path: np.ndarray, intact: cKDTree, displacement: np.ndarray, dx: float) -> np.ndarray:
+    """Opening and slip [m] at each point of a path [k, 2], shape [k, 2]; NaN where a side is missing.
 
-    x, displacement: of intact particles [m], [n, 2], in the same configuration as the path; dx: cell size [m]. On each
-    side u = a + b s + c t is fitted by least squares in the distances s across and t along the path, and the jump is
-    the difference of the two a: the linear terms take out the elastic strain of the rock beside the crack. A parallel
-    crack within `OUTER` cells counts in.
+    Opening is positive where the faces are apart, slip where the far face has moved to the right (dextral): neither
+    depends on the sense in which the path runs.
+
+    intact: places of intact particles [n, 2], in the same configuration as the path, their displacement [m], [n, 2];
+    dx: cell size [m]. On each side u = a + b s + c t is fitted by least squares in the distances s across and t along
+    the path, and the jump is the difference of the two a: the linear terms take out the elastic strain of the rock
+    beside the crack. A parallel crack within `OUTER` cells counts in.
     """
     found = np.full((len(path), 2), np.nan)
-    if len(x) == 0:
-        return found
+    x = np.asarray(intact.data)
     tangent = np.gradient(path, axis=0)
     tangent /= np.maximum(np.linalg.norm(tangent, axis=1, keepdims=True), 1e-300)
     normal = np.stack([-tangent[:, 1], tangent[:, 0]], axis=1)
-    close = cKDTree(x).query_ball_point(path, np.hypot(OUTER, BREADTH) * dx)
+    close = intact.query_ball_point(path, np.hypot(OUTER, BREADTH) * dx)
     for k, near in enumerate(close):
         d = x[near] - path[k]
         s, t = d @ normal[k], d @ tangent[k]

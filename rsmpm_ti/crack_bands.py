@@ -120,11 +120,11 @@ def openings(cracks: list[Crack], events, snapshot: Snapshot, dx: float) -> list
     """
     whole = (snapshot.failure_mode == INTACT) & np.isfinite(snapshot.x).all(axis=1)
     displacement = snapshot.displacement[whole]
-    reference = snapshot.x[whole] - displacement
+    intact = cKDTree(snapshot.x[whole] - displacement)
     found = []
     for crack in cracks:
         x, ids = events.x[crack.events], events.id[crack.events]
         moved = np.nan_to_num(x - (snapshot.x[ids] - snapshot.displacement[ids]))
         nearest = cKDTree(x).query(crack.course.path)[1]
-        found.append(jumps(crack.course.path - moved[nearest], reference, displacement, dx))
+        found.append(jumps(crack.course.path - moved[nearest], intact, displacement, dx))
     return found

@@ -103,7 +103,7 @@ def write_fracture(out: Path, fracture: Fracture, history: np.ndarray) -> None:
 
 def _crack_columns(axes: str) -> tuple[str, ...]:
     """growth_m is the furthest distance within the band from where the crack began; tip_speed the largest over
-    `crack_growth.WINDOW`, in the run's own time; slip the mean size of the faces' sliding on each other."""
+    `crack_growth.WINDOW`, in the run's own time; slip the faces' sliding on each other, dextral positive."""
     return (
         "crack", "particles", "tension_failures", "shear_failures", "shear_share", "shear_energy_share",
         "released_energy_J", "initiation_time_s", "initiation_stress_Pa", "initiation_strain",
@@ -122,7 +122,7 @@ def _crack_row(fracture: Fracture, k: int, history: np.ndarray) -> tuple:
     if course is not None:
         opening, slip = fracture.openings[k].T
         known = np.isfinite(opening)
-        jump = (opening[known].mean(), opening[known].max(), np.abs(slip[known]).mean()) if known.any() else (None,) * 3
+        jump = (opening[known].mean(), opening[known].max(), slip[known].mean()) if known.any() else (None,) * 3
         line = (course.length, course.tortuosity, course.direction, course.width, *jump)
     return (
         k, crack.particles, crack.tension, crack.shear, crack.shear / (crack.tension + crack.shear),
