@@ -17,15 +17,20 @@ class FlawTip:
     name: str
     place: np.ndarray  # [m], [2]
     outward: np.ndarray  # unit vector from the flaw's middle to this end, [2]
+    reach: float  # what breaks first within this distance broke at this end [m]
 
 
 def flaw_tips(slits: tuple[Slit, ...]) -> tuple[FlawTip, ...]:
-    """Both ends of each flaw, the one along +direction first."""
+    """Both ends of each flaw, the one along +direction first.
+
+    An end's reach is TIP_RADIUS from its corners, which lie half a width from its middle.
+    """
     return tuple(
         FlawTip(
             name=f"{k}{'+' if sign > 0.0 else '-'}",
             place=np.array(slit.centre[:2]) + 0.5 * sign * slit.length * slit.direction,
             outward=sign * slit.direction,
+            reach=TIP_RADIUS + 0.5 * slit.width,
         )
         for k, slit in enumerate(slits)
         for sign in (1.0, -1.0)
@@ -33,11 +38,12 @@ def flaw_tips(slits: tuple[Slit, ...]) -> tuple[FlawTip, ...]:
 
 
 def nearest_tip(x: np.ndarray, tips: tuple[FlawTip, ...]) -> np.ndarray:
-    """Index of the nearest tip to each place x [e, 2], -1 where none is within TIP_RADIUS, [e]."""
+    """Index of the nearest tip to each place x [e, 2], -1 where that is beyond the tip's reach, [e]."""
     if not tips or len(x) == 0:
         return np.full(len(x), -1)
     far = np.linalg.norm(x[:, None, :2] - np.stack([tip.place for tip in tips]), axis=2)
-    return np.where(far.min(axis=1) < TIP_RADIUS, far.argmin(axis=1), -1)
+    nearest = far.argmin(axis=1)
+    return np.where(far.min(axis=1) < np.array([tip.reach for tip in tips])[nearest], nearest, -1)
 
 
 def initiations(events, bands: list[np.ndarray], tips: tuple[FlawTip, ...], history: np.ndarray) -> list[dict]:

@@ -59,6 +59,14 @@ def test_crack_away_from_flaws_belongs_to_none():
     assert crack.origin.tip == "" and np.isnan(crack.origin.angle)
 
 
+def test_a_wide_flaw_breaks_at_its_corners_and_they_belong_to_its_end():
+    """A corner lies half a width from the middle of the end, which for a wide flaw is farther than from any crack."""
+    wide = Slit(centre=(0.0, 0.0), length=0.02, width=8e-3, angle=0.0)
+    for y, name in ((6e-3, "0+"), (8e-3, "")):
+        (crack,) = measured(failures(strip(90.0, 8e-3, 3.0, start=(0.01, y))), tips=flaw_tips((wide,)))
+        assert crack.origin.tip == name
+
+
 def test_cracks_come_in_the_order_in_which_they_began():
     early, late = strip(0.0, 5e-3, 2.0), strip(0.0, 8e-3, 2.0, start=(0.0, 0.05))
     table = in_turn([late, early], delay=-5e-5)  # the second list begins first
