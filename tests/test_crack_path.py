@@ -34,8 +34,8 @@ def test_straight_band_is_as_long_as_its_ends_are_apart(angle, width, kept):
     t = np.radians(angle)
     truth = np.ptp(x @ np.array([np.cos(t), np.sin(t)]))
     length = path_length(path_of(x))
-    # never more than 2 % too long; at most a spacing lost at each ragged end
-    assert truth - 2.0 * SPACING < length < 1.02 * truth
+    # never more than 2 % too long; an end's middle may lie a quarter of a spacing behind its foremost particle
+    assert truth - 0.5 * SPACING < length < 1.02 * truth
     # the ends of a band w wide may lie w/2 to either side of its middle: 2.5 of 80 spacings are 1.8 degrees
     assert abs((mean_direction(path_of(x)) - angle + 90.0) % 180.0 - 90.0) < 2.0
     assert tortuosity(path_of(x)) < 1.02

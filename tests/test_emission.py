@@ -25,7 +25,7 @@ def test_b_of_a_known_catalogue_is_found_within_three_standard_errors(b, seed):
 
 
 def test_error_of_b_falls_as_one_over_root_n_and_is_b_over_root_n():
-    few, many = b_value(gutenberg_richter(1.0, 1000, 5)), b_value(gutenberg_richter(1.0, 64000, 5))
+    few, many = b_value(gutenberg_richter(1.8, 1000, 5)), b_value(gutenberg_richter(1.8, 64000, 5))
     # an exponential law's own scatter: the error estimate of 1000 events is good to 1/sqrt(1000) times a few
     assert few.error / many.error == pytest.approx(8.0, rel=0.15)
     assert many.error == pytest.approx(many.b / np.sqrt(many.events), rel=0.03)

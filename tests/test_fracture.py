@@ -102,6 +102,7 @@ def test_mass_scaling_slows_waves_so_tip_speed_is_judged_by_the_scaled_rock():
     plain, scaled = (measure_fracture(scene(time_scale=k), history(), events, last) for k in (1.0, 8.0))
     assert scaled.rayleigh_speed == pytest.approx(plain.rayleigh_speed / 8.0)
     assert plain.rayleigh_speed == pytest.approx(1524.8, abs=0.05)
+    assert scaled.fragments.total_mass == plain.fragments.total_mass  # a fragment weighs what the rock does
     # failures 2 us apart: a shear wave crosses 2.5 spacings in 0.37 us, in the scaled rock in 2.95 us
     assert len(plain.acoustic) == len(events)
     assert len(scaled.acoustic) < 0.5 * len(events)

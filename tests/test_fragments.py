@@ -45,11 +45,11 @@ def test_pieces_that_drift_apart_are_two_without_a_failure():
 
 
 def test_pieces_below_four_particles_are_dust_counted_together():
-    lone = np.array([[0.05, 0.0], [0.06, 0.0], [0.06 + SPACING, 0.0]])
+    lone = np.array([[0.05, 0.0], *([0.06 + k * SPACING, 0.0] for k in range(3))])
     four = 0.07 + SPACING * np.array([[0, 0], [1, 0], [0, 1], [1, 1]])
     found = find_fragments(snapshot(np.concatenate([BLOCK, lone, four])), DENSITY)
     assert [piece.particles for piece in found.pieces] == [len(BLOCK), 4]
-    assert found.dust.particles == 3 and found.dust.mass == pytest.approx(3 * DENSITY * SPACING**2)
+    assert found.dust.particles == 4 and found.dust.mass == pytest.approx(4 * DENSITY * SPACING**2)
     assert np.isnan(found.dust.diameter)
 
 
