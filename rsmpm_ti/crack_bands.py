@@ -13,8 +13,8 @@ from scipy.spatial import cKDTree
 from rsmpm_ti.aperture import jumps
 from rsmpm_ti.crack_growth import WINDOW, growth, tip_speed
 from rsmpm_ti.crack_path import REACH, centre_path, distances, mean_direction, neighbour_graph, path_length, tortuosity
-from rsmpm_ti.cracks import FEWEST, leaving_angle
-from rsmpm_ti.flaw_tips import FlawTip, nearest_tip
+from rsmpm_ti.cracks import FEWEST
+from rsmpm_ti.flaw_tips import FlawTip, first_angle, nearest_tip
 from rsmpm_ti.snapshot import INTACT, TENSION, Snapshot
 
 
@@ -95,7 +95,7 @@ def _measure(events, band, graph, tips, spacing, time_scale) -> Crack:
             width=particles * spacing**2 / whole,
         )  # fmt: skip
     near = int(nearest_tip(x[:1], tips)[0])
-    angle = leaving_angle(x[mode == mode[0]], x[0], tips[near].outward) if near >= 0 else np.nan
+    angle = first_angle(x, mode, tips[near].outward) if near >= 0 else np.nan
     return Crack(
         events=band,
         particles=particles,

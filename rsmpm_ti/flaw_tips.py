@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from rsmpm_ti.cracks import TIP_RADIUS, leaving_angle
+from rsmpm_ti.cracks import FIT_LENGTH, TIP_RADIUS, leaving_angle
 from rsmpm_ti.nominal import load_at
 from rsmpm_ti.regions import Slit
 from rsmpm_ti.snapshot import MODE_NAMES
@@ -46,6 +46,19 @@ def nearest_tip(x: np.ndarray, tips: tuple[FlawTip, ...]) -> np.ndarray:
     return np.where(far.min(axis=1) < np.array([tip.reach for tip in tips])[nearest], nearest, -1)
 
 
+def first_angle(x: np.ndarray, mode: np.ndarray, outward: np.ndarray) -> float:
+    """Angle from a flaw's continuation at which a crack left [degrees], as `cracks.leaving_angle`; NaN for too few.
+
+    x [e, 2] [m], mode [e]: failures of one band from the crack's first on, in order of time. Only those of the first
+    one's mode count, and only until the crack is twice FIT_LENGTH away: what crushes at the tip later is no direction
+    in which it left. (`cracks.wings` fits all failures in tension of the whole run.)
+    """
+    far = np.linalg.norm(x - x[0], axis=1)
+    away = (far > 2.0 * FIT_LENGTH) & (far < 3.0 * FIT_LENGTH)  # farther ones may have come from another tip
+    early = np.arange(len(x)) < (int(np.argmax(away)) if away.any() else len(x))
+    return leaving_angle(x[early & (mode == mode[0])], x[0], outward)
+
+
 def initiations(events, bands: list[np.ndarray], tips: tuple[FlawTip, ...], history: np.ndarray) -> list[dict]:
     """The first failure near each tip that became part of a crack: one entry per tip, None in it where nothing grew.
 
@@ -64,7 +77,8 @@ def initiations(events, bands: list[np.ndarray], tips: tuple[FlawTip, ...], hist
             e = mine[0]
             stress, strain = (float(v) for v in load_at(history, events.time[e]))
             band = bands[band_of[e]]
-            angle = leaving_angle(events.x[band[events.mode[band] == events.mode[e]]], events.x[e], tip.outward)
+            since = band[band >= e]
+            angle = first_angle(events.x[since], events.mode[since], tip.outward)
             entry |= {
                 "stress_Pa": stress if np.isfinite(stress) else None,
                 "strain": strain if np.isfinite(strain) else None,

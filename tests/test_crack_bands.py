@@ -180,6 +180,19 @@ def test_a_stray_failure_near_a_tip_is_no_initiation():
     assert entry["time_s"] == pytest.approx(1e-4) and entry["angle_deg"] == pytest.approx(70.0, abs=3.0)
 
 
+def test_what_breaks_at_the_tip_later_does_not_turn_the_angle_of_leaving():
+    """A second crack from the same tip, and shear beside the first: one band in the end, but the first left at 70."""
+    first, later = wing(TIPS[0], 70.0), wing(TIPS[0], 130.0)
+    crushed = wing(TIPS[0], -20.0, length=3e-3)
+    x = np.concatenate([first, later, crushed])
+    time = np.concatenate([np.arange(len(first)), 1e4 + np.arange(len(later)), 0.5 + np.arange(len(crushed))])
+    table = failures(x, time=time, mode=np.repeat([1, 1, 2], [len(first), len(later), len(crushed)]))
+    (crack,) = measured(table)
+    bands, _ = find_bands(table, SPACING)
+    assert crack.origin.angle == pytest.approx(70.0, abs=3.0)
+    assert initiations(table, bands, TIPS, history())[0]["angle_deg"] == pytest.approx(70.0, abs=3.0)
+
+
 def test_two_bands_that_meet_are_one_crack_with_two_initiations():
     """A bridge of rock between flaws breaks from both sides: one crack, which began at the tip that broke first."""
     gap = TIPS[2].place - TIPS[0].place
@@ -193,6 +206,9 @@ def test_two_bands_that_meet_are_one_crack_with_two_initiations():
     entries = initiations(table, bands, TIPS, history())
     assert [entry["crack"] for entry in entries] == [0, None, 0, None]
     assert entries[2]["time_s"] > entries[0]["time_s"]
+    for entry, tip, heading in ((entries[0], TIPS[0], gap), (entries[2], TIPS[2], -gap)):
+        angle = np.degrees(np.arccos(heading @ tip.outward / length))
+        assert entry["angle_deg"] == pytest.approx(angle, abs=3.0)  # each from its own tip
 
 
 def test_failures_of_a_solid_have_bands_but_no_course():
