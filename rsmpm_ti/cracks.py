@@ -1,4 +1,4 @@
-"""Cracks as bands of failed particles that grow from the tips of a flaw: where they start, lean and end. NumPy only."""
+"""The two wings of one flaw: bands of failed particles from its tips, where they start, lean and end. NumPy only."""
 
 from dataclasses import dataclass
 
@@ -7,6 +7,7 @@ from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
 from scipy.spatial import cKDTree
 
+from rsmpm_ti.crack_path import REACH
 from rsmpm_ti.regions import Slit
 
 TIP_RADIUS = 3.0e-3
@@ -33,7 +34,7 @@ def wings(x: np.ndarray, slit: Slit, spacing: float) -> list[Wing | None]:
     """The crack at each end of a flaw, the end along +direction first; None where nothing has grown.
 
     x [e, 2]: places of tension failures in order of time; spacing: initial particle spacing [m]. Failed particles are
-    one crack when each is within 2.5 spacings of another: one full cell between neighbours still reads as joined.
+    one crack when each is within REACH spacings of another.
     """
     return [_wing(x, slit, spacing, sign) for sign in (1.0, -1.0)]
 
@@ -45,17 +46,22 @@ def _wing(x: np.ndarray, slit: Slit, spacing: float, sign: float) -> Wing | None
     if len(near) == 0:
         return None
     half = (x - np.array(slit.centre[:2])) @ outward > 0.0  # the other tip's crack is never part of this one
-    member = _connected(x, 2.5 * spacing, near[0], half)
+    member = _connected(x, REACH * spacing, near[0], half)
     points, start = x[member], x[near[0]]
+    return Wing(tip=tip, start=start, points=points, angle=leaving_angle(points, start, outward))
+
+
+def leaving_angle(points: np.ndarray, start: np.ndarray, outward: np.ndarray) -> float:
+    """Angle between `outward` and the line fitted to a crack's places within FIT_LENGTH of its start, degrees in
+    [0, 180]; NaN for fewer than FEWEST such places. points [e, 2], start [2] [m]; outward: unit vector [2]."""
     close = points[np.linalg.norm(points - start, axis=1) < FIT_LENGTH]
-    angle = np.nan
-    if len(close) >= FEWEST:
-        centred = close - close.mean(axis=0)
-        direction = np.linalg.svd(centred, full_matrices=False)[2][0]
-        if direction @ (close.mean(axis=0) - start) < 0.0:
-            direction = -direction
-        angle = float(np.degrees(np.arccos(np.clip(direction @ outward, -1.0, 1.0))))
-    return Wing(tip=tip, start=start, points=points, angle=angle)
+    if len(close) < FEWEST:
+        return float("nan")
+    centred = close - close.mean(axis=0)
+    direction = np.linalg.svd(centred, full_matrices=False)[2][0]
+    if direction @ (close.mean(axis=0) - start) < 0.0:
+        direction = -direction
+    return float(np.degrees(np.arccos(np.clip(direction @ outward, -1.0, 1.0))))
 
 
 def _connected(x: np.ndarray, reach: float, seed: int, allowed: np.ndarray) -> np.ndarray:

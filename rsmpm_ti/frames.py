@@ -104,14 +104,19 @@ class Gallery:
             self._pending.pop(0).result()
         self._pending.append(self._writer.submit(work, *arguments))
 
-    def close(self, snapshot: Snapshot, history: np.ndarray) -> None:
-        """Finish what waits and the movie, paint summary.png, give the painters' memory back."""
+    def close(self, snapshot: Snapshot, history: np.ndarray, paths: list[np.ndarray], acoustic: np.ndarray) -> None:
+        """Finish what waits and the movie, paint summary.png, give the painters' memory back.
+
+        paths: lines of cracks, each [k, 2] [m]; acoustic: times of acoustic events, ascending [s].
+        """
         for pending in self._pending:
             pending.result()
         self._writer.shutdown()
         if self._movie is not None:
             self._movie.close()
-        summary_picture(self._out / "summary.png", snapshot, history, self.painters["cracks"], self._scene.title)
+        summary_picture(
+            self._out / "summary.png", snapshot, history, self.painters["cracks"], self._scene.title, paths, acoustic
+        )
         for painter in self.painters.values():
             painter.close()
 

@@ -53,6 +53,20 @@ def write_events(path: Path, events) -> None:
             )
 
 
+def write_table(path: Path, header: tuple[str, ...], rows) -> None:
+    """A CSV of one header and any rows; numbers to ten digits, an empty cell for what is None or not finite."""
+
+    def cell(value) -> str:
+        if value is None or (isinstance(value, float | np.floating) and not np.isfinite(value)):
+            return ""
+        return f"{value:.10g}" if isinstance(value, float | np.floating) else str(value)
+
+    with complete(path) as part, open(part, "w", newline="", encoding="utf-8") as file:
+        writer = csv.writer(file)
+        writer.writerow(header)
+        writer.writerows([cell(value) for value in row] for row in rows)
+
+
 def write_vtu(path: Path, snapshot: Snapshot) -> None:
     """Particles as vertices for ParaView; vectors and points padded to 3D, stress as 9 components."""
     import meshio

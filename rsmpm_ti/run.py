@@ -21,11 +21,13 @@ from rsmpm_ti.spec import Scene
 @dataclass(frozen=True)
 class Result:
     """What a run leaves behind. `history`: structured array of HISTORY_COLUMNS; `summary`: the dict of summary.json;
-    `events`: EventTable; `snapshot`: last state. `stopped`: "" when the run reached its end, else why it did not."""
+    `events`: EventTable; `fracture`: cracks, fragments and acoustic events measured on them; `snapshot`: last state.
+    `stopped`: "" when the run reached its end, else why it did not."""
 
     history: np.ndarray
     summary: dict
     events: object
+    fracture: object
     snapshot: Snapshot
     out: Path | None
     stopped: str = ""
@@ -220,6 +222,7 @@ class _Run:
         write_json(self.out / "scene.json", record)
 
     def _finish(self, stopped: str) -> Result:
+        from rsmpm_ti.fracture import measure_fracture
         from rsmpm_ti.observe import read_events, take_snapshot
         from rsmpm_ti.summary import summarise
 
@@ -227,6 +230,7 @@ class _Run:
         speed = self._speed()
         history, events = self.history.table(), read_events(self.sim)
         snapshot = take_snapshot(self.sim, self.clock.time)
+        fracture = measure_fracture(self.scene, history, events, snapshot)
         summary = {
             "particles": self.sim.particles.count,
             "steps": self.clock.step,
@@ -237,19 +241,25 @@ class _Run:
             "particle_steps_per_s": speed,
             "time_scale": self.scene.loading.time_scale,
             **summarise(self.scene, history, events, self.history.energy_start),
+            **fracture.numbers(),
             "stopped": stopped,
         }
         if self.out is not None:
-            self._write(history, events, snapshot, summary)
-        return Result(history=history, summary=summary, events=events, snapshot=snapshot, out=self.out, stopped=stopped)
+            self._write(history, events, fracture, snapshot, summary)
+        return Result(
+            history=history, summary=summary, events=events, fracture=fracture, snapshot=snapshot, out=self.out,
+            stopped=stopped,
+        )  # fmt: skip
 
-    def _write(self, history, events, snapshot, summary) -> None:
+    def _write(self, history, events, fracture, snapshot, summary) -> None:
+        from rsmpm_ti.fracture import write_fracture
         from rsmpm_ti.output import write_checkpoint, write_events, write_history, write_json
         from rsmpm_ti.sorting import particle_arrays
 
         write_history(self.out / "history.csv", history)
         write_events(self.out / "events.csv", events)
+        write_fracture(self.out, fracture, history)
         write_json(self.out / "summary.json", summary)
         clock = {"step": np.array(self.clock.step), "strain": np.array(self.clock.strain)}
         write_checkpoint(self.out / "checkpoint.npz", clock | particle_arrays(self.sim))
-        self.gallery.close(snapshot, history)
+        self.gallery.close(snapshot, history, fracture.paths, fracture.acoustic.time)

@@ -3,6 +3,7 @@
 import numpy as np
 
 from rsmpm_ti.cracks import half_turn_mismatch, wings
+from rsmpm_ti.nominal import loading_curve
 from rsmpm_ti.observe import EventTable
 from rsmpm_ti.regions import slits_of
 from rsmpm_ti.snapshot import MODE_NAMES, TENSION
@@ -22,13 +23,9 @@ def summarise(scene: Scene, history: np.ndarray, events: EventTable, energy_star
     the modulus is still the slope. The platen imbalance is over what the platens add, the kinetic share over all the
     elastic energy, that of the confinement included.
     """
-    stress = 0.5 * (history["stress_top_Pa"] + history["stress_bottom_Pa"])
-    time = history["time_s"]
-    # a row's stress is the mean since the row before, so it belongs to the middle of that interval
-    middle = time - 0.5 * np.diff(time, prepend=0.0)
-    strain = history["axial_strain"] - 0.5 * np.diff(history["axial_strain"], prepend=0.0)
+    middle, stress, strain = loading_curve(history)
     first = float(events.time[0]) if len(events) else np.inf
-    before = time < first
+    before = history["time_s"] < first
     out = {
         "confinement_Pa": scene.loading.confinement,
         "first_failure_stress_Pa": None,

@@ -12,8 +12,9 @@ PACKAGE = ROOT / "rsmpm_ti"
 
 LAYERS = """
     errors units snapshot tensors regions seeding heterogeneity shape transfer averaging softening directional laws
-    confinement boundaries starts spec traversal state sorting crack_stress material node_update kernels smoothing tracking measure
-    stepper observe drive cracks summary output record paint frames library run scene verify bench
+    confinement boundaries starts spec traversal state sorting crack_stress material node_update kernels smoothing
+    tracking measure stepper observe drive nominal crack_path cracks flaw_tips crack_growth aperture crack_bands
+    fragments emission summary output fracture record paint frames library run scene verify bench
 """.split()
 """A module imports only from modules to the left of its own name."""
 
@@ -30,8 +31,11 @@ BENCH_LAYERS = "settings yardstick speed measures front error __main__".split()
 ROOMS = {"paint": PAINT_LAYERS, "verify": VERIFY_LAYERS, "bench": BENCH_LAYERS}
 
 PAINT_SEES = {"errors", "units", "snapshot"}
-WITHOUT_TAICHI = ["errors", "units", "snapshot", "regions", "seeding", "heterogeneity", "output"]
-STRATEGY_FILES = ["heterogeneity", "shape", "transfer", "laws", "boundaries"]
+WITHOUT_TAICHI = """
+    errors units snapshot regions seeding heterogeneity output nominal crack_path cracks flaw_tips crack_growth aperture
+    crack_bands fragments emission
+""".split()
+STRATEGY_FILES = ["heterogeneity", "shape", "transfer", "laws", "boundaries", "averaging", "softening", "directional"]
 MAY_INIT = {"rsmpm_ti/run.py", "tests/conftest.py"}
 VAGUE = {"util", "utils", "helper", "helpers", "manager", "managers", "engine", "engines"}
 MOST_LINES = 350

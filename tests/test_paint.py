@@ -262,6 +262,31 @@ def test_summary_has_a_curve_and_the_crack_pattern(tmp_path, table):
     assert (image[:, :900] < 128).all(axis=2).sum() > 1000
 
 
+def test_summary_draws_crack_paths_with_lengths_and_the_acoustic_count(tmp_path):
+    """Against the same picture without them: new ink on the path, beside it a label, and a curve on the left."""
+    x = lattice(50, 100)
+    mode = np.where(abs(x[:, 0] - 0.025) < 2e-3, TENSION, INTACT).astype(np.int8)
+    long = np.column_stack([np.full(9, 0.025), np.linspace(0.02, 0.08, 9)])
+    short = np.array([[0.01, 0.01], [0.012, 0.012]])
+
+    painter = frame_painter()
+
+    def picture(*more) -> np.ndarray:
+        path = summary_picture(tmp_path / "s.png", snapshot(x, mode=mode), history(30), painter, "t", *more)
+        with Image.open(path) as image:
+            return np.array(image).astype(int)
+
+    plain, one, all_three = picture(), picture([long]), picture([long, short], np.linspace(1e-4, 9e-4, 40))
+    rows, columns = np.nonzero((plain != one).any(axis=2))
+    assert columns.min() > 900  # nothing but the crack panel has changed
+    dark = (one < 60).all(axis=2) & (plain[..., 0] > 180)
+    assert dark.sum() > 300  # the line, about 400 pixels long, and the digits
+    assert np.ptp(rows) > 300 and np.ptp(columns) > 40  # 60 of 110 mm high; the label is written beside the line
+    changed = (all_three != one).any(axis=2)
+    assert all(0 < np.ptp(places) < 30 for places in np.nonzero(changed[:, 1000:]))  # a line and no label
+    assert changed[:, :850].sum() > 300  # the curve
+
+
 def test_probe_answers_once_with_a_reason():
     works, reason = probe()
     assert isinstance(works, bool) and reason and "\n" not in reason

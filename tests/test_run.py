@@ -39,8 +39,8 @@ def test_every_promised_file_is_written(run_folder):
     names = {str(p.relative_to(run_folder)) for p in run_folder.rglob("*") if p.is_file()}
     for expected in (
         "frames/stress_0000.png", "frames/cracks_0000.png", "frames/stress_0004.png", "cube.mp4", "summary.png",
-        "history.csv", "events.csv", "particles_0000.vtu", "particles_0010.vtu", "particles.pvd", "scene.json",
-        "summary.json", "checkpoint.npz",
+        "history.csv", "events.csv", "cracks.csv", "fragments.csv", "acoustic.csv", "particles_0000.vtu",
+        "particles_0010.vtu", "particles.pvd", "scene.json", "summary.json", "checkpoint.npz",
     ):  # fmt: skip
         assert expected in names
     assert not [n for n in names if ".part" in n]
@@ -63,6 +63,28 @@ def test_history_and_events_hold_what_the_summary_says(run_folder):
         if e["mode"] == "tension":
             assert float(e["sigma_1_Pa"]) >= 2e6  # recorded at the moment of failure, not after it
     assert all(float(e["released_energy_J"]) > 0.0 for e in events)
+
+
+def test_cracks_fragments_and_acoustic_events_hold_what_the_summary_says(run_folder):
+    summary = json.loads((run_folder / "summary.json").read_text())
+    events = table(run_folder / "events.csv")
+    cracks, acoustic = table(run_folder / "cracks.csv"), table(run_folder / "acoustic.csv")
+    assert summary["cracks"] == len(cracks) >= 2
+    assert {"0+", "0-"} <= {row["flaw_tip"] for row in cracks}
+    assert sum(int(row["failures"]) for row in acoustic) == len(events)
+    released = sum(float(event["released_energy_J"]) for event in events)
+    assert sum(float(row["energy_J"]) for row in acoustic) == pytest.approx(released, rel=1e-6)
+    first = next(entry for entry in summary["initiation"] if entry["time_s"] == summary["first_failure_time_s"])
+    assert first["position_m"] == pytest.approx(summary["first_failure_position_m"])
+    # one is read between the rows around the failure, the other extrapolated from four rows before it
+    assert first["stress_Pa"] == pytest.approx(summary["first_failure_stress_Pa"], rel=0.01)
+    # wings are in tension: they open, and by less than the platens have moved
+    opened = [float(row["aperture_max_m"]) for row in cracks if row["flaw_tip"]]
+    assert all(0.0 < aperture < 2.5e-4 * 0.1 for aperture in opened)
+    mass = sum(float(row["mass_kg"]) for row in table(run_folder / "fragments.csv"))
+    intact = np.mean(meshio.read(run_folder / "particles_0010.vtu").point_data["failure_mode"] == 0)
+    # kg per metre: the specimen without flaw (in stairs of half a 2 mm cell) and failed particles, strained by 2.5e-4
+    assert mass == pytest.approx(2600.0 * (0.05 * 0.1 - 0.015 * 0.006) * intact, rel=0.01)
 
 
 def test_vtu_files_carry_the_promised_fields_and_the_cracks(run_folder):

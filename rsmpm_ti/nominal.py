@@ -1,0 +1,26 @@
+"""The load on the specimen as a function of time, read from history rows. NumPy only."""
+
+import numpy as np
+
+
+def loading_curve(history: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Times [s], nominal stress (mean of the two platens) [Pa] and strain [1], compression positive, each [rows].
+
+    A row's stress is the mean since the row before, so it belongs to the middle of that interval; the times and strains
+    returned are those of the middles.
+    """
+    time, strain = history["time_s"], history["axial_strain"]
+    middle = time - 0.5 * np.diff(time, prepend=0.0)
+    stress = 0.5 * (history["stress_top_Pa"] + history["stress_bottom_Pa"])
+    return middle, stress, strain - 0.5 * np.diff(strain, prepend=0.0)
+
+
+def load_at(history: np.ndarray, time: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Nominal stress [Pa] and strain [1] at times [s], shape [e], linear between rows; NaN where none is defined."""
+    middle, stress, strain = loading_curve(history)
+    out = []
+    for value in (stress, strain):
+        finite = np.isfinite(value)
+        none = np.full(np.shape(time), np.nan)
+        out.append(np.interp(time, middle[finite], value[finite]) if finite.any() else none)
+    return out[0], out[1]
