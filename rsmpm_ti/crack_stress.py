@@ -56,9 +56,10 @@ def strength_share(sim: ti.template(), p, mode):
 
 
 @ti.func
-def start_crack(sim: ti.template(), p, mode, angle):
-    """Mark a particle as failed in tension (1) or shear (2), with the normal of its crack at `angle` [rad]."""
+def start_crack(sim: ti.template(), p, mode, angle, time):
+    """From now on a particle loses strength in tension (1) or shear (2); its crack's normal lies at `angle` [rad]."""
     particles = sim.particles
+    ti.atomic_min(sim.events.onset[None], time)
     particles.mode[p] = mode
     particles.crack_angle[p] = angle
     if mode == 1:
@@ -163,7 +164,7 @@ def slip_everywhere(sim: ti.template(), p, s, cohesion):
 
 
 @ti.func
-def release(sim: ti.template(), p, G):
+def release(sim: ti.template(), p, G, time):
     """Stress of a cracked particle, from its elastic trial stress in particles.sigma; returns (stress, lost).
 
     `lost`: energy per volume that went into opening, slip and damage in this step. G: displacement gradient.
@@ -180,7 +181,7 @@ def release(sim: ti.template(), p, G):
     if particles.mode[p] == 1:
         load = load_factors(sim, p, extreme_principals(s))
         if sim.rock.criterion.shear_load(load[0], load[1]) >= 1.0:
-            start_crack(sim, p, 2, particles.crack_angle[p])
+            start_crack(sim, p, 2, particles.crack_angle[p], time)
             left = strength_left(sim, p)
     if particles.mode[p] == 2:
         s = slip_everywhere(sim, p, s, left[2])

@@ -70,11 +70,11 @@ def check_and_release(sim: ti.template(), p, dt, time, slot):
     if particles.mode[p] == 0:
         mode = failure_by_own_stress(sim, p, extremes)
         if mode != 0:
-            start_crack(sim, p, mode, principal_angle(particles.sigma[p]))
+            start_crack(sim, p, mode, principal_angle(particles.sigma[p]), time)
             if ti.static(particles.viscous):
                 particles.q[p] = 0.0
     if particles.mode[p] != 0:
-        sigma, lost = release(sim, p, dt * particles.L[p])
+        sigma, lost = release(sim, p, dt * particles.L[p], time)
         lost *= particles.volume[p] * particles.J[p]
         particles.sigma[p] = sigma
         particles.lost[p] = particles.lost[p] + lost

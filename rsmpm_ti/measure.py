@@ -35,6 +35,15 @@ class Survey:
     failed_shear: int
 
 
+@ti.func
+def gaping(sim: ti.template(), p):
+    """Whether a particle is a crack between pieces that may part as far as they like: its J then warns of nothing."""
+    apart = False
+    if ti.static(sim.particles.cracks):
+        apart = sim.particles.mode[p] != 0
+    return apart
+
+
 @ti.kernel
 def _survey(sim: ti.template()):
     """Fill sim.report; its fields first, the vector of all of them last, so that one copy brings them to Python."""
@@ -73,7 +82,7 @@ def _survey(sim: ti.template()):
                 report.work[None] += ti.cast(sim.confinement * particles.volume[p] * (sim.J_start - J), ti.f64)
             ti.atomic_max(report.speed[None], ti.cast(v.norm(), ti.f64))
             ti.atomic_min(report.J_min[None], ti.cast(J, ti.f64))
-            ti.atomic_max(report.J_max[None], ti.cast(J, ti.f64))
+            ti.atomic_max(report.J_max[None], ti.cast(ti.select(gaping(sim, p), 1.0, J), ti.f64))
             for d in ti.static(range(sim.dim)):
                 report.momentum[d][None] += ti.cast(m_p * v[d], ti.f64)
         base = grid.base(xi, sim.shape)

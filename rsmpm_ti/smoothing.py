@@ -4,6 +4,7 @@ import taichi as ti
 
 from rsmpm_ti.kernels import coordinates, weights_at
 from rsmpm_ti.shape import tensor_weight
+from rsmpm_ti.tensors import extreme_principals
 
 
 @ti.kernel
@@ -13,7 +14,7 @@ def clear_means(sim: ti.template()):
         sim.means.sums[i] = zero
         sim.means.peak[i] = 0.0
     for _ in range(1):
-        sim.means.fresh[None] = 0
+        sim.means.fresh[None], sim.means.any_hot[None] = 0, 0
 
 
 @ti.kernel
@@ -56,6 +57,32 @@ def mean_stress(sim: ti.template(), p):
     for offset in ti.static(sim.stencil):
         total += tensor_weight(w, offset) * sim.means.sums[base + ti.Vector(offset)]
     return ti.Vector([total[0], total[1], total[2], total[3]]) / total[4]
+
+
+@ti.kernel
+def mark_hot(sim: ti.template(), limit: float):
+    """Which nodes, and whether any, have a mean sigma_1 of at least `limit` [Pa].
+
+    The mean stress at a particle is a weighted mean of those at its nodes and sigma_1 is convex, so a particle without
+    a hot node cannot be overloaded: most are spared the reading.
+    """
+    for i in ti.grouped(sim.means.sums):
+        total, hot = sim.means.sums[i], 0
+        if total[4] > 0.0:
+            sigma = ti.Vector([total[0], total[1], total[2], total[3]])
+            if extreme_principals(sigma)[0] >= limit * total[4]:
+                hot = 1
+                sim.means.any_hot[None] = 1
+        sim.means.hot[i] = hot
+
+
+@ti.func
+def near_hot(sim: ti.template(), p):
+    base = sim.grid.base(coordinates(sim, p), sim.shape)
+    hot = 0
+    for offset in ti.static(sim.stencil):
+        hot |= sim.means.hot[base + ti.Vector(offset)]
+    return hot == 1
 
 
 def smooth_stress(sim) -> None:

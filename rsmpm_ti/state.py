@@ -1,5 +1,7 @@
 """What a run holds: particles, background nodes, ledger and events, allocated for one scene and no more."""
 
+import math
+
 import numpy as np
 import taichi as ti
 
@@ -158,6 +160,9 @@ class Events:
 
     def __init__(self, scene: Scene, capacity: int, real):
         self.count, self.by_mode = ti.field(ti.i32, ()), ti.field(ti.i32, 3)
+        # when a particle first begins to lose strength: without fracture energy that is the first event
+        self.onset = ti.field(ti.f64, ())
+        self.onset[None] = np.inf
         if scene.rock.criterion.breaks and scene.rock.after_failure.directional:
             capacity *= 2  # a particle that failed in tension may fail in shear later
         capacity = capacity if scene.rock.criterion.breaks else 1
@@ -176,7 +181,16 @@ class Means:
         self.reach, self.taps = len(taps) // 2, ti.field(real, len(taps))
         self.taps.from_numpy(np.array(taps))
         self.sums, self.other = (ti.Vector.field(5, real, grid.nodes) for _ in range(2))
-        self.peak = ti.field(real, grid.nodes)
+        self.peak, self.hot, self.any_hot = (
+            ti.field(real, grid.nodes),
+            ti.field(ti.i32, grid.nodes),
+            ti.field(ti.i32, ()),
+        )
+        # smallest tensile strength of a particle [Pa], and steps between two looks: the mean over a length cannot
+        # change within a quarter of the time that a wave needs for it
+        self.weakest = scene.rock.criterion.tensile_strength
+        travel = scene.wave_speed * scene.dt
+        self.interval = max(1, math.floor(0.25 * scene.rock.averaging.length / travel))
         # cracked particles whose shade has not been cast yet: place and angle of the crack's normal
         self.fresh, self.x, self.angle = (
             ti.field(ti.i32, ()),
@@ -287,6 +301,8 @@ class Simulation:
         if particles.varied:
             strength = scene.rock.heterogeneity.factors(x, volume)  # one draw over all bodies
             particles.strength.from_numpy(strength[order].astype(kind))
+            if self.averaging:
+                self.means.weakest *= float(strength.min())
 
 
 def initial_velocity(scene: Scene, body_index: int, x: np.ndarray) -> np.ndarray:

@@ -74,7 +74,7 @@ class Clock:
         for _ in range(min(steps, self.total - self.step)):
             factor = self.factor(self.time + 0.5 * self.dt)
             self._pass_list(self._sim, self.dt, self.time + self.dt, factor)
-            if self._sim.averaging:
-                track_cracks(self._sim)
+            if self._sim.averaging and self.step % self._sim.means.interval == 0:
+                track_cracks(self._sim, self.time + self.dt)
             self.strain += factor * self.strain_rate * self.dt
             self.step += 1

@@ -5,7 +5,7 @@ import taichi as ti
 from rsmpm_ti.crack_stress import start_crack, strengths
 from rsmpm_ti.kernels import coordinates
 from rsmpm_ti.material import shaded
-from rsmpm_ti.smoothing import mean_stress, smooth_stress
+from rsmpm_ti.smoothing import mark_hot, mean_stress, near_hot, smooth_stress
 from rsmpm_ti.state import MOST_FRESH
 from rsmpm_ti.tensors import extreme_principals, principal_angle
 
@@ -16,7 +16,7 @@ def judge(sim: ti.template()):
     particles = sim.particles
     for p in particles.mode:
         particles.overload[p] = 0.0
-        if particles.mode[p] == 0:
+        if sim.means.any_hot[None] == 1 and particles.mode[p] == 0 and near_hot(sim, p):
             mean = mean_stress(sim, p)
             load = extreme_principals(mean)[0] / strengths(sim, p)[0]
             angle = principal_angle(mean)
@@ -29,7 +29,7 @@ def judge(sim: ti.template()):
 
 
 @ti.kernel
-def crack_most_overloaded(sim: ti.template()):
+def crack_most_overloaded(sim: ti.template(), time: ti.f64):
     """Start a crack in every particle that none of its neighbours exceeds."""
     particles = sim.particles
     for p in particles.mode:
@@ -44,7 +44,7 @@ def crack_most_overloaded(sim: ti.template()):
                 if k < MOST_FRESH:
                     sim.means.x[k] = particles.reference[p] + particles.u[p]
                     sim.means.angle[k] = particles.crack_angle[p]
-                    start_crack(sim, p, 1, particles.crack_angle[p])
+                    start_crack(sim, p, 1, particles.crack_angle[p], time)
                     if ti.static(particles.viscous):
                         particles.q[p] = 0.0
 
@@ -66,9 +66,10 @@ def shade(sim: ti.template()):
                         particles.shade_angle[p] = fresh.angle[k]
 
 
-def track_cracks(sim) -> None:
+def track_cracks(sim, time: float) -> None:
     """The tensile check by the mean stress, after a step."""
     smooth_stress(sim)
+    mark_hot(sim, sim.means.weakest)
     judge(sim)
-    crack_most_overloaded(sim)
+    crack_most_overloaded(sim, time)
     shade(sim)

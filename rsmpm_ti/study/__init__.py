@@ -1,0 +1,1 @@
+"""Families of runs, each against a theory or against itself, with a table and one picture."""

@@ -1,0 +1,57 @@
+"""python -m rsmpm_ti.study [STUDY ...] [--list] [--quick] [--out DIR] [--jobs N]."""
+
+import argparse
+import os
+import sys
+from pathlib import Path
+
+from rsmpm_ti.study.catalogue import STUDIES
+from rsmpm_ti.study.runs import run_all
+from rsmpm_ti.verify.report import draw, print_head, print_rows, write_table
+
+
+def parser() -> argparse.ArgumentParser:
+    p = argparse.ArgumentParser(
+        prog="python -m rsmpm_ti.study",
+        description="Families of runs against theory; runs that are done are kept in DIR and not run again.",
+    )
+    p.add_argument("studies", nargs="*", metavar="STUDY", help="names of studies")
+    p.add_argument("--list", action="store_true", help="list the studies and stop")
+    p.add_argument("--quick", action="store_true", help="coarser and fewer runs")
+    p.add_argument("--out", default="renders/study", metavar="DIR", help="where results and pictures go")
+    p.add_argument("--jobs", type=int, default=os.cpu_count() or 1, metavar="N", help="runs at a time")
+    return p
+
+
+def main(arguments: list[str] | None = None) -> int:
+    options = parser().parse_args(arguments)
+    if options.list:
+        print("\n".join(f"{study.name:<20} {study.about}" for study in STUDIES.values()))
+        return 0
+    unknown = [name for name in options.studies if name not in STUDIES]
+    if unknown or not options.studies or options.jobs < 1:
+        problem = "name a study" if not options.studies else f"unknown study {', '.join(unknown)}"
+        if options.jobs < 1:
+            problem = f"--jobs {options.jobs} is not 1 or more"
+        print(f"study: {problem}; the studies are {', '.join(STUDIES)}", file=sys.stderr)
+        return 2
+    misses = 0
+    for name in options.studies:
+        study, results, total = STUDIES[name], {}, 0.0
+        folder = Path(options.out) / name
+        runs = study.runs(options.quick)
+        for tag, result, seconds in run_all(runs, folder, options.jobs):
+            results[tag] = result
+            total += seconds
+            print(f"{name}: {tag} ({len(results)} of {len(runs)}) {seconds:.0f} s", file=sys.stderr, flush=True)
+        outcome = study.finish({run.tag: results[run.tag] for run in runs})
+        draw(folder / f"{name}.png", outcome)
+        write_table(folder / f"{name}.csv", [(name, row) for row in outcome.rows])
+        print_head()
+        print_rows(name, outcome.rows, total)
+        misses += sum(not row.passed for row in outcome.rows)
+    return 1 if misses else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

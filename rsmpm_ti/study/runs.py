@@ -1,0 +1,76 @@
+"""What a study is: many runs, each in a process of its own and kept on disk, then rows and a picture from all."""
+
+import json
+import multiprocessing
+import time
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass, field
+from pathlib import Path
+
+import numpy as np
+
+from rsmpm_ti import __version__
+from rsmpm_ti.output import complete
+from rsmpm_ti.verify.case import Outcome
+
+
+@dataclass(frozen=True)
+class Run:
+    """One run: `work(**settings)` returns a dict of arrays and numbers. `settings` are plain data; `tag` names it."""
+
+    tag: str
+    work: Callable
+    settings: dict = field(default_factory=dict)
+    precision: str = "f64"
+
+
+@dataclass(frozen=True)
+class Study:
+    """`runs(quick)`: what to run; `finish(results)`: rows and picture, results being {tag: dict of arrays}."""
+
+    name: str
+    about: str
+    runs: Callable[[bool], list[Run]]
+    finish: Callable[[dict], Outcome]
+
+
+def stamp(run: Run) -> str:
+    """What a kept result must agree with to be used again."""
+    return json.dumps({"version": __version__, "precision": run.precision, **run.settings}, sort_keys=True)
+
+
+def kept(run: Run, folder: Path) -> dict | None:
+    """The result of an earlier run with the same settings, if there is one. Arrays only: no code is loaded."""
+    path = folder / f"{run.tag}.npz"
+    if not path.is_file():
+        return None
+    with np.load(path, allow_pickle=False) as file:
+        result = {name: file[name] for name in file.files}
+    return result if str(result.pop("stamp")) == stamp(run) else None
+
+
+def _work(task: tuple[Run, Path]) -> tuple[str, dict, float]:
+    from rsmpm_ti.run import start_taichi
+
+    run, folder = task
+    start = time.perf_counter()
+    start_taichi(run.precision, "cpu", 1)
+    result = run.work(**run.settings)
+    with complete(folder / f"{run.tag}.npz") as part, open(part, "wb") as file:
+        np.savez_compressed(file, stamp=np.array(stamp(run)), **result)
+    return run.tag, result, time.perf_counter() - start
+
+
+def run_all(runs: list[Run], folder: Path, jobs: int) -> Iterator[tuple[str, dict, float]]:
+    """(tag, result, seconds) of every run as it comes; those kept from before take no time."""
+    folder.mkdir(parents=True, exist_ok=True)
+    waiting = []
+    for run in runs:
+        result = kept(run, folder)
+        if result is None:
+            waiting.append((run, folder))
+        else:
+            yield run.tag, result, 0.0
+    if waiting:
+        with multiprocessing.get_context("spawn").Pool(min(jobs, len(waiting)), maxtasksperchild=1) as pool:
+            yield from pool.imap_unordered(_work, waiting)

@@ -1,0 +1,57 @@
+"""The slit cube with rock that cracks as rock does: directional cracks, friction, fracture energy, a material length.
+
+Wing cracks in tension come first, then shear cracks from the flaw's ends at the peak. G_f_I: Zhang (2002), Int. J. Rock
+Mech. Min. Sci. 39:401, sigma_t = 6.88 K_Ic, so K_Ic = 0.29 MPa sqrt(m) and G_f_I = K_Ic^2 (1 - nu^2)/E = 4.9 J/m^2;
+G_f_II = 4.8 G_f_I from K_IIc/K_Ic = 2.2 (limestone, Al-Shayea 2005).
+"""
+
+from rsmpm_ti.averaging import Nonlocal
+from rsmpm_ti.boundaries import Platen
+from rsmpm_ti.directional import Directional
+from rsmpm_ti.laws import Hooke, MohrCoulomb, Rock
+from rsmpm_ti.regions import Box, Difference, Slit
+from rsmpm_ti.seeding import Jittered
+from rsmpm_ti.softening import LinearSoftening
+from rsmpm_ti.spec import Affine, Body, Domain, Loading, Output, Scene, Schedule
+from rsmpm_ti.units import GPa, MPa, mm
+
+QUICK = {"dx": 1.0 * mm}
+
+
+def scene(
+    *,
+    flaw_angle: float = 45.0,
+    flaw_length: float = 15.0 * mm,
+    flaw_width: float = 3.0 * mm,
+    G_f_I: float = 5.0,
+    G_f_II: float = 24.0,
+    residual_friction_angle: float = 30.0,
+    length: float = 1.0 * mm,
+    dx: float = 0.5 * mm,
+    seed: int = 1,
+    strain_end: float = 1.0e-3,
+    time_scale: float = 16.0,
+) -> Scene:
+    softening = LinearSoftening(G_f_I=G_f_I, G_f_II=G_f_II)
+    rock = Rock(
+        density=2600.0,
+        elasticity=Hooke(E=17.0 * GPa, nu=0.14),
+        criterion=MohrCoulomb(cohesion=5.95 * MPa, friction_angle=40.0, tensile_strength=2.0 * MPa),
+        after_failure=Directional(residual_friction_angle=residual_friction_angle, softening=softening),
+        averaging=Nonlocal(length=length),
+    )
+    flaw = Slit(centre=(25.0 * mm, 50.0 * mm), length=flaw_length, width=flaw_width, angle=flaw_angle, rounded=True)
+    block = Box(lower=(0.0, 0.0), upper=(50.0 * mm, 100.0 * mm))
+    platens = (
+        Platen(axis=1, side="lower", position=0.0, speed=2.5e-3),
+        Platen(axis=1, side="upper", position=100.0 * mm, speed=-2.5e-3),
+    )
+    return Scene(
+        title="Uniaxial compression of a flawed specimen: directional cracks and fracture energy",
+        domain=Domain(lower=(-5.0 * mm, 0.0), upper=(55.0 * mm, 100.0 * mm), dx=dx),
+        bodies=(Body(region=Difference(whole=block, removed=(flaw,)), seeding=Jittered(seed=seed, fitted=True)),),
+        rock=rock,
+        loading=Loading(boundaries=platens, start=Affine(), time_scale=time_scale, width=50.0 * mm),
+        schedule=Schedule(strain_end=strain_end),
+        output=Output(stress_limit=4.0 * MPa),
+    )
