@@ -1,4 +1,4 @@
-"""The slit specimen of `cube_lab` turned against the grid and loaded by traction on its ends: its cracks, turned back."""
+"""The slit specimen of `cube_lab` turned against the grid, loaded by traction on its ends; its cracks, turned back."""
 
 import math
 from dataclasses import dataclass, replace
@@ -88,7 +88,7 @@ def turned_scene(*, angle: float, dx: float, seed: int, paper: bool, end: float,
 
 
 def grow(*, angle: float, dx: float, seed: int, paper: bool, end: float, time_scale: float) -> dict:
-    """Load until both wings are GROWN long: places, modes and loads of all failures, in the specimen's frame [m, Pa]."""
+    """Load until both wings are GROWN long: all failures and what has opened, in the specimen's frame [m, Pa]."""
     real = ti.lang.impl.get_runtime().default_fp
     scene = turned_scene(angle=angle, dx=dx, seed=seed, paper=paper, end=end, time_scale=time_scale)
     drive = Drive(scene, scene.particles(), real)
