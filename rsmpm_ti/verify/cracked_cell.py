@@ -49,10 +49,11 @@ class ThereAndBack:
     """The platen's share of its speed, step by step: out, a part back, all the way out, back and into the rock."""
 
     dt: float
+    wide: float
 
     def factor(self, time: float) -> float:
-        """Strain is meant to turn at 0.5e-3, 0.1e-3 and WIDE."""
-        strain, out = time / self.dt * PASSES_STEP, (0.5e-3, 0.9e-3, 0.8e-3 + WIDE)
+        """Strain is meant to turn at 0.5e-3, 0.1e-3 and `wide`, and to end at -1e-3."""
+        strain, out = time / self.dt * PASSES_STEP, (0.5e-3, 0.9e-3, 0.8e-3 + self.wide)
         return 1.0 if strain < out[0] or out[1] < strain < out[2] else -1.0
 
 
@@ -75,7 +76,8 @@ class Cell:
 def between_walls(law: Directional) -> Cell:
     """Pull one cell between walls by a platen along ThereAndBack."""
     dt = PASSES_STEP * BAND / SPEED
-    steps = round((2.0 * (0.8e-3 + WIDE) + 1e-3) / PASSES_STEP)
+    wide = WIDE if softening_name(law) == "ExponentialSoftening" else 1.3e-3  # until all strength is gone
+    steps = round((0.8e-3 + 2.0 * wide + 1e-3) / PASSES_STEP)
     scene = Scene(
         title="cracked cell",
         domain=Domain(lower=(0.0, 0.0), upper=(BAND, BAND), dx=BAND),
@@ -88,7 +90,7 @@ def between_walls(law: Directional) -> Cell:
                 Wall(axis=1, side="lower", position=0.0),
                 Platen(axis=1, side="upper", position=BAND, speed=SPEED),
             ),
-            start=ThereAndBack(dt=dt),
+            start=ThereAndBack(dt=dt, wide=wide),
         ),
         schedule=Schedule(t_end=steps * dt, dt=dt),
         shape=Linear(),
