@@ -196,6 +196,7 @@ def test_band_that_would_snap_back_is_refused_with_a_dx_that_would_do(shape, kin
     assert message.startswith(f"after_failure.softening.{name} = 2.0 is refused: it must be large enough")
     times = float(re.search(r"at least (\S+) times smaller", message)[1])
     assert times == pytest.approx(3.0, rel=0.01)  # printed with three digits
+    assert f"softening.{name}" in refusal(lambda: scene(dx=1.01 * largest, shape=shape, after_failure=law))
     assert scene(dx=0.99 * largest, shape=shape, after_failure=law).rock.after_failure is law
 
 
