@@ -58,7 +58,7 @@ class Nonlocal:
         spare = (self.length / dx) ** 2 - 2.0 * variance
         if spare < 0.36:  # a sampled Gaussian this narrow has another variance than it should; three points have it
             return (0.5 * spare, 1.0 - spare, 0.5 * spare)
-        reach = math.ceil(3.0 * math.sqrt(spare))
+        reach = math.ceil(3.5 * math.sqrt(spare))
         weight = np.exp(-0.5 * np.arange(-reach, reach + 1) ** 2 / spare)
         return tuple((weight / weight.sum()).tolist())
 

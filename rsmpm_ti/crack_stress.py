@@ -4,7 +4,7 @@ import math
 
 import taichi as ti
 
-from rsmpm_ti.directional import FRESH, SWEEPS
+from rsmpm_ti.directional import FRESH, NO_DIRECTION, SWEEPS
 from rsmpm_ti.tensors import (
     double_contraction,
     extreme_principals,
@@ -38,14 +38,16 @@ def load_factors(sim: ti.template(), p, extremes):
 def strength_left(sim: ti.template(), p):
     """What is left of the tensile strength across the crack and across the one at right angles, and of cohesion [Pa].
 
-    Slip wears the tensile strength away with the cohesion.
+    Slip wears the tensile strength away with the cohesion: that of the crack it is on, of all planes if crushed.
     """
     particles, soft = sim.particles, sim.rock.after_failure.softening
     full, widest = strengths(sim, p), particles.widest[p]
     n = soft.share(widest[0], full[0], soft.G_f_I, sim.band)
     t = soft.share(widest[1], full[0], soft.G_f_I, sim.band)
     shear = soft.share(particles.slip[p], full[1], soft.G_f_II, sim.band)
-    return ti.Vector([ti.min(n, shear) * full[0], ti.min(t, shear) * full[0], shear * full[1]])
+    if particles.mode[p] == 2:
+        t = ti.min(t, shear)
+    return ti.Vector([ti.min(n, shear) * full[0], t * full[0], shear * full[1]])
 
 
 @ti.func
@@ -101,6 +103,9 @@ def open_cracks(sim: ti.template(), p, s, left):
         # to the nearer principal direction, so that each crack keeps its own history
         turn = principal_angle(shut)
         turn -= 0.5 * math.pi * ti.round(turn / (0.5 * math.pi))
+        half = 0.5 * (shut[0] - shut[1])
+        if ti.sqrt(half * half + shut[3] * shut[3]) < NO_DIRECTION * sim.rock.criterion.tensile_strength:
+            turn = 0.0
         shut = turned(shut, turn)
         particles.crack_angle[p] = particles.crack_angle[p] + turn
     for _ in ti.static(range(SWEEPS)):
@@ -144,7 +149,8 @@ def slip_on_crack(sim: ti.template(), p, s, left):
 def slip_everywhere(sim: ti.template(), p, s, cohesion):
     """Mohr-Coulomb of crushed rock on every plane, with what is left of its cohesion, at constant volume.
 
-    In the plane the mean stress stays and the radius shrinks; sigma_zz is then held to what the envelope allows.
+    In the plane the mean stress stays and the radius shrinks; sigma_zz is then held between what the envelope allows
+    beside the two in-plane stresses. A plate has none, and nothing beside it.
     """
     particles, law, criterion = sim.particles, sim.rock.after_failure, sim.rock.criterion
     share = cohesion / strengths(sim, p)[1]
@@ -158,8 +164,10 @@ def slip_everywhere(sim: ti.template(), p, s, cohesion):
         scale = most / radius
         s[0], s[1], s[3] = centre + half * scale, centre - half * scale, s[3] * scale
         radius = most
-    flow = (1.0 + sin_phi) / (1.0 - sin_phi)
-    s[2] = ti.max(s[2], flow * (centre + radius) - 2.0 * c_cos_phi / (1.0 - sin_phi))
+    if ti.static(not sim.rock.elasticity.plane_stress):
+        flow, strength = (1.0 + sin_phi) / (1.0 - sin_phi), 2.0 * c_cos_phi / (1.0 - sin_phi)
+        most_pressed, least_pressed = flow * (centre + radius) - strength, (centre - radius + strength) / flow
+        s[2] = ti.max(ti.min(s[2], least_pressed), most_pressed)
     return s
 
 

@@ -20,6 +20,9 @@ from rsmpm_ti.softening import Brittle, ExponentialSoftening, LinearSoftening
 FRESH = 1e-12
 """Crack strain that marks a direction as cracked: with it a brittle law has no strength left, others have all."""
 
+NO_DIRECTION = 1e-5
+"""Radius of in-plane stress over tensile strength below which a rotating crack stays: round-off has no direction."""
+
 SWEEPS = 4
 """Sweeps over the two openings; each leaves (lam/M)^2 of the error, 3 % for nu = 0.14 and 11 % for nu = 0.25."""
 

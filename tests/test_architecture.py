@@ -23,7 +23,8 @@ PAINT_LAYERS = "view layout chrome raster ggui figure summary movie".split()
 
 VERIFY_LAYERS = """
     case drives fe_field meshing finite_elements closed_forms exact_motion bodies relaxation waves manufactured specimen
-    triaxial cell envelope disc hole slit_field first_failure weibull catalogue report running __main__
+    triaxial cell material_point crack_forms crack_paths cracked_cell envelope disc hole slit_field first_failure
+    weibull catalogue report running __main__
 """.split()
 BENCH_LAYERS = "settings yardstick speed measures front error __main__".split()
 """The same within `rsmpm_ti/verify/` and `rsmpm_ti/bench/`, which see every layer above their package's name."""

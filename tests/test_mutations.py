@@ -49,6 +49,10 @@ MUTATIONS = {
         ],
         "failed_cell",
     ),
+    "crushed rock free to slip out of the plane": (
+        [("crack_stress.py", "ti.max(ti.min(s[2], least_pressed), most_pressed)", "ti.max(s[2], most_pressed)")],
+        "cracked_cell",
+    ),
     "usl in place of musl": (
         [
             ("stepper.py", '"musl": musl,', '"musl": usl,'),

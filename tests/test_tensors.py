@@ -10,13 +10,17 @@ from rsmpm_ti.tensors import (
     PACKED_LENGTH,
     double_contraction,
     extreme_principals,
+    hughes_winget,
     in_plane_times,
     isotropic,
     midpoint_gradient,
     pack,
+    principal_angle,
     rotate,
+    rotation_angle,
     symmetric,
     trace,
+    turned,
     unpack,
 )
 
@@ -33,7 +37,7 @@ def random_packed(dim: int, real, n: int = 200) -> np.ndarray:
 
 def rotation(angle, axis) -> np.ndarray:
     """Rodrigues' formula, [3, 3]; angle in radians."""
-    K = np.cross(np.eye(3), -np.asarray(axis) / np.linalg.norm(axis))
+    K = np.cross(np.eye(3), np.asarray(axis) / np.linalg.norm(axis))
     return np.eye(3) + np.sin(angle) * K + (1.0 - np.cos(angle)) * K @ K
 
 
@@ -246,3 +250,61 @@ def test_rotate_keeps_invariants_for_any_increment(taichi_real, dim):
             # each invariant is a sum of products of a few numbers of size 4; 3D forms R with entries of size W^2/W^2
             limit = 3000 * epsilon(taichi_real)
             np.testing.assert_allclose(invariant(after), invariant(before), rtol=0.0, atol=limit)
+
+
+def test_turned_stress_is_that_seen_from_turned_axes(taichi_real):
+    """s' = R^T s R with the columns of R the turned axes; a quarter turn swaps nn and tt."""
+
+    @ti.func
+    def seen(a: ti.template(), p):
+        return turned(vector(a, p, 0, 4), a[p, 4])
+
+    s = random_packed(2, taichi_real, 61)
+    angles = rounded(np.concatenate([[0.5 * np.pi], np.linspace(-7.0, 7.0, 60)]), taichi_real)
+    s[0] = [1.0, 2.0, 3.0, 4.0]
+    R = rotations(2, angles)
+    expected = packed(R.transpose(0, 2, 1) @ tensor(s) @ R, 2)
+    found = on_rows(seen, np.column_stack([s, angles]), 4, taichi_real)
+    # sine and cosine of twice an angle of 7 err by 14 round-offs, of stresses of size 4
+    np.testing.assert_allclose(found, expected, rtol=0.0, atol=100 * epsilon(taichi_real))
+    np.testing.assert_allclose(found[0], [2.0, 1.0, 3.0, -4.0], rtol=0.0, atol=30 * epsilon(taichi_real))
+
+
+def test_rotation_angle_is_the_angle_by_which_stress_is_turned(taichi_real):
+    """Against a finite rotation, and for any gradient against what `hughes_winget` does to a stress."""
+
+    @ti.func
+    def angle_of(a: ti.template(), p):
+        return ti.Vector([rotation_angle(matrix(a, p, 0, 2))])
+
+    @ti.func
+    def turned_back(a: ti.template(), p):
+        G, s = matrix(a, p, 0, 2), vector(a, p, 4, 4)
+        moved, _ = hughes_winget(s, G)
+        return turned(moved, rotation_angle(G)) - s
+
+    angles = np.linspace(-2.9, 2.9, 60)
+    G = (rotations(2, angles) - np.eye(3))[:, :2, :2].reshape(60, 4)
+    found = on_rows(angle_of, G, 1, taichi_real)[:, 0]
+    # half the angle's tangent is a ratio of numbers that lose 1/cos of it near half a turn
+    np.testing.assert_allclose(found, angles, rtol=0.0, atol=50 * epsilon(taichi_real) / np.cos(1.45) ** 2)
+    rng = np.random.default_rng(13)
+    rows = np.concatenate([rng.uniform(-0.8, 0.8, size=(200, 4)), rng.normal(size=(200, 4))], axis=1)
+    left = on_rows(turned_back, rows, 4, taichi_real)
+    np.testing.assert_allclose(left, 0.0, rtol=0.0, atol=200 * epsilon(taichi_real))
+
+
+def test_principal_angle_is_that_of_the_larger_eigenvector(taichi_real):
+    @ti.func
+    def angle_of(a: ti.template(), p):
+        return ti.Vector([principal_angle(vector(a, p, 0, 4))])
+
+    s = random_packed(2, taichi_real)
+    values, vectors = np.linalg.eigh(tensor(s)[:, :2, :2])
+    apart = np.diff(values, axis=1)[:, 0] > 0.05  # the direction of nearly equal stresses is round-off
+    assert apart.sum() > 150
+    found = on_rows(angle_of, s, 1, taichi_real)[:, 0]
+    normal = np.stack([np.cos(found), np.sin(found)], axis=1)
+    across = np.abs(np.sum(normal * vectors[:, :, 0], axis=1))  # zero when it is the larger one's, of either sign
+    assert (across[apart] < 200 * epsilon(taichi_real)).all()
+    assert (np.abs(found) <= 0.5 * np.pi + epsilon(taichi_real)).all()

@@ -3,6 +3,7 @@
 from rsmpm_ti.verify import (
     bodies,
     cell,
+    cracked_cell,
     disc,
     envelope,
     first_failure,
@@ -18,8 +19,8 @@ from rsmpm_ti.verify import (
 from rsmpm_ti.verify.case import Case
 
 MODULES = (
-    waves, bodies, relaxation, manufactured, specimen, triaxial, envelope, cell, disc, hole, slit_field, first_failure,
-    weibull,
+    waves, bodies, relaxation, manufactured, specimen, triaxial, envelope, cell, cracked_cell, disc, hole, slit_field,
+    first_failure, weibull,
 )  # fmt: skip
 
 CASES: dict[str, Case] = {case.name: case for module in MODULES for case in module.CASES}
