@@ -9,7 +9,7 @@ from rsmpm_ti.paint.chrome import Wording
 from rsmpm_ti.paint.view import Palette, crack_palette, cracking_palette, margin_palette, stress_palette
 from rsmpm_ti.snapshot import INTACT, SHEAR, Snapshot
 
-BEGUN = 0.4
+BEGUN = 0.6
 """Share of its tint with which rock that has just begun to crack stands out from intact rock at once."""
 
 MARGIN_TICKS = tuple(
