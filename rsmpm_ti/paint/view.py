@@ -74,7 +74,7 @@ def cracking_palette() -> Palette:
 
 
 def margin_palette() -> Palette:
-    """Signed load: bam, pale at 0, shear green below, tension purple above; without its darkest ends, so that black shows."""
+    """Signed load: bam, pale at 0, shear green below, tension purple above; without its darkest, so black shows."""
     ramp = np.asarray(cm.bam(np.linspace(0.92, 0.08, 257)), dtype=np.float32)[:, :3] * 255.0
     marks = {"void": (184, 184, 184), "tension": (0, 0, 0), "shear": (0xFF, 0xC2, 0x0A)}
     return Palette(ramp=ramp, limit=1.0, **marks, folded=True)
