@@ -12,6 +12,7 @@ from rsmpm_ti.paint.figure import FramePainter, write_png
 from rsmpm_ti.paint.movie import Movie
 from rsmpm_ti.paint.summary import summary_picture
 from rsmpm_ti.snapshot import Snapshot
+from rsmpm_ti.softening import Brittle
 from rsmpm_ti.spec import Scene
 
 JUMP_SHARE, JUMP_GROWTH = 0.0003, 0.05
@@ -67,7 +68,8 @@ class Gallery:
             "strain_limit": strain,
             "load_limit": load, "backend": scene.output.painter,
         }  # fmt: skip
-        self.painters = {kind: FramePainter(kind=kind, **shared) for kind in ("stress", "cracks")}
+        kinds = ("stress", "cracks", "margin") if scene.output.margin else ("stress", "cracks")
+        self.painters = {kind: FramePainter(kind=kind, softens=softens(scene), **shared) for kind in kinds}
         self.warning = ""
         self._movie = None
         if scene.output.movie:
@@ -119,6 +121,12 @@ class Gallery:
         )
         for painter in self.painters.values():
             painter.close()
+
+
+def softens(scene: Scene) -> bool:
+    """Whether the rock of a scene loses its strength while it cracks, not at once."""
+    law = scene.rock.after_failure
+    return law.directional and not isinstance(law.softening, Brittle)
 
 
 def stress_limit(scene: Scene, load: float | None) -> float:

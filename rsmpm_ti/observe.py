@@ -5,6 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from rsmpm_ti.errors import UnstableRun
+from rsmpm_ti.margin import margins
 from rsmpm_ti.measure import Survey
 from rsmpm_ti.snapshot import HISTORY_COLUMNS, Snapshot
 from rsmpm_ti.state import Simulation
@@ -62,6 +63,12 @@ def take_snapshot(sim: Simulation, time: float) -> Snapshot:
         mode = (particles.failed if particles.cracks else particles.mode).to_numpy()[order].astype(np.int8)
         events = read_events(sim)
         failure_time[events.id] = events.time
+    margin, governs, damage = (values[order] for values in margins(sim))
+    aperture, crack_angle = np.zeros(n), np.full(n, np.nan)
+    if particles.cracks:
+        aperture = sim.band * column(particles.opening).max(axis=1)
+        begun = particles.mode.to_numpy()[order] > 0
+        crack_angle[begun] = np.degrees(column(particles.crack_angle)[begun]) % 180.0
     return Snapshot(
         time=time,
         x=column(particles.reference) + u,
@@ -74,6 +81,11 @@ def take_snapshot(sim: Simulation, time: float) -> Snapshot:
         strength=column(particles.strength) if particles.varied else np.ones(n),
         failure_mode=mode,
         failure_time=failure_time,
+        margin=margin,
+        governs=governs.astype(np.int8),
+        damage=damage,
+        aperture=aperture,
+        crack_angle=crack_angle,
     )
 
 

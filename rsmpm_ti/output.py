@@ -89,6 +89,10 @@ def write_vtu(path: Path, snapshot: Snapshot) -> None:
             "failure_time": snapshot.failure_time,
             "volume": snapshot.volume,
             "strength_factor": snapshot.strength,
+            "margin": snapshot.margin,
+            "governs": snapshot.governs,
+            "damage": snapshot.damage,
+            "aperture_m": snapshot.aperture,
         },
     )
     with complete(path) as part:

@@ -32,6 +32,7 @@ def parser() -> argparse.ArgumentParser:
     p.add_argument("--elastic", action="store_true", help="switch failure off")
     p.add_argument("--frames", type=int, metavar="N", help="number of equally spaced frames")
     p.add_argument("--no-movie", action="store_true", help="frames only")
+    p.add_argument("--margin", action="store_true", help="also frames of how near the rock is to failure")
     p.add_argument("--painter", choices=("raster", "ggui"), help="ggui needs Vulkan (a GPU, or Mesa's lavapipe)")
     p.add_argument("--arch", choices=("cpu", "cuda"), default="cpu")
     p.add_argument("--precision", choices=("f64", "f32"), default="f64")
@@ -55,6 +56,8 @@ def build(options: argparse.Namespace) -> Scene:
         output = replace(output, frames=QUICK_FRAMES if options.frames is None else options.frames)
     if options.no_movie:
         output = replace(output, movie=False)
+    if options.margin:
+        output = replace(output, margin=True)
     if options.painter:
         output = replace(output, painter=options.painter)
     schedule = scene.schedule

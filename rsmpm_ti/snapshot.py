@@ -47,3 +47,12 @@ class Snapshot:
     strength: np.ndarray  # factor on the rock's cohesion and tensile strength, 1 where uniform, [n]
     failure_mode: np.ndarray  # INTACT, TENSION or SHEAR, int8 [n]
     failure_time: np.ndarray  # [s], NaN where intact, [n]
+    # how near to failure: 1 unloaded, or pressed from all sides; 0 at failure, and where failed or begun to crack;
+    # below 0 where the mean stress exceeds the strength and a particle nearby, which exceeds it more, fails first; [n]
+    margin: np.ndarray
+    governs: np.ndarray  # which failure the margin is to, or which it was: TENSION, SHEAR, or 0 for none, int8 [n]
+    damage: np.ndarray  # share of strength lost, 0 to 1, by the paper's laws 1 where failed, [n]
+    aperture: np.ndarray  # opening of the crack in the particle [m], 0 by the paper's laws, [n]
+    # of the normal of the crack in the particle, from +x [degrees, 0 to 180), NaN where it has none and by the paper's
+    # laws; where it failed in shear, of sigma_1 then; [n]
+    crack_angle: np.ndarray

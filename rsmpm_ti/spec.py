@@ -161,13 +161,15 @@ class Schedule:
 class Output:
     """What is written. Frames come at equal strain (or time) intervals and when failed particles jump.
 
-    stress_limit: symmetric colour limit [Pa]; by default 1.5 times the tensile strength.
+    stress_limit: symmetric colour limit [Pa]; by default 1.5 times the tensile strength. margin: also frames of the
+    margin to failure.
     """
 
     frames: int = 60
     movie: bool = True
     vtu: int = 10
     painter: str = "raster"
+    margin: bool = False
     stress_limit: float | None = None
 
     def __post_init__(self):

@@ -3,6 +3,7 @@
 from types import SimpleNamespace
 
 import numpy as np
+from snapshots import snapshot_of
 
 from rsmpm_ti.snapshot import HISTORY_COLUMNS, Snapshot
 
@@ -71,17 +72,10 @@ def history(stress_rate: float = 1e9, strain_rate: float = 0.05, end: float = 1e
 
 def snapshot(x, mode=None, displacement=None, velocity=None, volume=None) -> Snapshot:
     """Particles at places x [n, dim] of the volume that SPACING gives."""
-    n, dim = x.shape
-    mode = np.zeros(n, dtype=np.int8) if mode is None else np.asarray(mode, dtype=np.int8)
-    return Snapshot(
-        time=1e-3,
-        x=x,
+    return snapshot_of(
+        x,
+        mode,
         displacement=np.zeros_like(x) if displacement is None else displacement,
         velocity=np.zeros_like(x) if velocity is None else velocity,
-        sigma=np.zeros((n, 3, 3)),
-        sigma_1=np.zeros(n),
-        sigma_3=np.zeros(n),
-        volume=np.full(n, SPACING**dim) if volume is None else volume,
-        failure_mode=mode,
-        failure_time=np.where(mode > 0, 0.0, np.nan),
+        volume=np.full(len(x), SPACING ** x.shape[1]) if volume is None else volume,
     )

@@ -13,12 +13,12 @@ PACKAGE = ROOT / "rsmpm_ti"
 LAYERS = """
     errors units snapshot tensors regions seeding heterogeneity shape transfer averaging softening directional laws
     confinement boundaries starts spec traversal state sorting crack_stress material node_update kernels smoothing
-    tracking measure stepper observe drive nominal crack_path cracks flaw_tips crack_growth aperture crack_bands
+    tracking margin measure stepper observe drive nominal crack_path cracks flaw_tips crack_growth aperture crack_bands
     fragments emission summary output fracture record paint frames library run scene verify bench
 """.split()
 """A module imports only from modules to the left of its own name."""
 
-PAINT_LAYERS = "view layout chrome raster ggui figure summary movie".split()
+PAINT_LAYERS = "view layout chrome raster ggui kinds figure summary movie".split()
 """The same within `rsmpm_ti/paint/`, which sees nothing else of the package than PAINT_SEES."""
 
 VERIFY_LAYERS = """

@@ -82,6 +82,8 @@ def test_options_change_what_they_say():
     scene = scene_of("cube", "--frames", "3", "--no-movie", "--painter", "ggui", "--elastic")
     assert (scene.output.frames, scene.output.movie, scene.output.painter) == (3, False, "ggui")
     assert not scene.rock.criterion.breaks
+    assert not scene.output.margin and scene_of("cube", "--margin").output.margin
+    assert scene_of("cube", "--set", "output.margin=true").output.margin is True
 
 
 def test_recorded_scene_is_a_scene_again(command, tmp_path):

@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 from PIL import Image
+from snapshots import snapshot_of
 
 from rsmpm_ti.errors import SceneError
 from rsmpm_ti.paint import ggui as ggui_module
@@ -12,7 +13,7 @@ from rsmpm_ti.paint.layout import lay_out
 from rsmpm_ti.paint.raster import Raster
 from rsmpm_ti.paint.summary import summary_picture
 from rsmpm_ti.paint.view import View, crack_palette, stress_palette
-from rsmpm_ti.snapshot import HISTORY_COLUMNS, INTACT, SHEAR, TENSION, Snapshot
+from rsmpm_ti.snapshot import HISTORY_COLUMNS, INTACT, SHEAR, TENSION
 
 pytestmark = pytest.mark.usefixtures("taichi_f64")
 
@@ -28,20 +29,9 @@ def lattice(nx=40, ny=20, spacing=1e-3, lower=(0.0, 0.0)):
 
 def snapshot(x, sigma_1=0.0, mode=None, volume=1e-6, displacement=None, time=1e-3):
     n = len(x)
-    mode = np.zeros(n, dtype=np.int8) if mode is None else mode
-    return Snapshot(
-        time=time,
-        x=x,
-        displacement=np.zeros_like(x) if displacement is None else displacement,
-        velocity=np.zeros_like(x),
-        sigma=np.zeros((n, 3, 3)),
-        sigma_1=np.full(n, sigma_1),
-        sigma_3=np.zeros(n),
-        volume=np.full(n, volume),
-        strength=np.ones(n),
-        failure_mode=mode,
-        failure_time=np.where(mode > 0, 0.0, np.nan),
-    )
+    displacement = np.zeros_like(x) if displacement is None else displacement
+    constant = {"sigma_1": np.full(n, sigma_1), "volume": np.full(n, volume), "time": time}
+    return snapshot_of(x, mode, displacement=displacement, **constant)
 
 
 def history(rows, loaded=True):
@@ -151,8 +141,9 @@ def test_jitter_leaves_no_holes_but_a_flaw_stays_open():
 
 @pytest.mark.parametrize("size", [None, (1280, 1440), (1440, 1280)])
 @pytest.mark.parametrize("upper", [(0.05, 0.1), (0.1, 0.1), (0.2, 0.05)])
-def test_layout_has_even_size_equal_scales_and_no_overlap(upper, size):
-    layout = lay_out((0.0, 0.0), upper, size, 8)
+@pytest.mark.parametrize("legend_lines", [3, 5])
+def test_layout_has_even_size_equal_scales_and_no_overlap(legend_lines, upper, size):
+    layout = lay_out((0.0, 0.0), upper, size, 8, legend_lines)
     view, panel = layout.view, layout.panel
     assert layout.size == (size or layout.size)
     assert layout.size[0] % 2 == 0 and layout.size[1] % 2 == 0

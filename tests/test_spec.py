@@ -302,6 +302,7 @@ def test_unknown_missing_and_wrong_fields_are_refused_by_place():
         ("schedule.rows", 10.0, "an integer"),
         ("schedule.dt", [1e-8], "a number or none"),
         ("output.movie", 1, "true or false"),
+        ("output.margin", 0, "true or false"),
         ("bodies.0.region", {"type": "Linear"}, "Box, Disc"),
         ("bodies.0.seeding", {"type": "Linear"}, "Lattice or Jittered"),
         ("rock.criterion", {"type": "Void"}, "MohrCoulomb or Unbreakable"),

@@ -19,11 +19,16 @@ MILLI, MEGA = 1e3, 1e-6
 
 @dataclass(frozen=True, kw_only=True)
 class Wording:
-    """What is written on a frame. `bar` labels the colour bar; None leaves it out."""
+    """What is written on a frame. `bar` labels the colour bar; None leaves it out.
+
+    `ticks`: marks of the bar, (place in limits from -1 to 1, label), for one on which nothing lies beyond the ends; by
+    default round numbers of MPa.
+    """
 
     title: str
     bar: str | None
     legend: tuple[tuple[str, tuple[int, int, int]], ...]
+    ticks: tuple[tuple[float, str], ...] = ()
     inset_x: str = "axial strain [%]"
     inset_y: str = "axial stress [MPa]"
 
@@ -50,7 +55,7 @@ def draw_chrome(
     figure.text(*place, wording.title, fontsize=19, fontweight="bold", ha="left", va="bottom")
 
     if wording.bar is not None:
-        _colour_bar(figure, layout, palette, wording.bar)
+        _colour_bar(figure, layout, palette, wording)
     for line, (name, colour) in enumerate(wording.legend):
         top = layout.legend.top + line * LEGEND_LINE
         _swatch(figure, layout.size, Box(left=layout.legend.left, top=top + 6, width=18, height=18), colour)
@@ -62,14 +67,18 @@ def draw_chrome(
     return np.asarray(canvas.buffer_rgba())[..., :3].copy()
 
 
-def _colour_bar(figure: Figure, layout: Layout, palette: Palette, label: str) -> None:
+def _colour_bar(figure: Figure, layout: Layout, palette: Palette, wording: Wording) -> None:
     limit = palette.limit * MEGA
     mappable = ScalarMappable(Normalize(-limit, limit), ListedColormap(palette.ramp / 255.0))
-    bar = figure.colorbar(mappable, cax=figure.add_axes(layout.bar.fraction(layout.size)), extend="both")
-    bar.locator = MaxNLocator(max(4, layout.bar.height // 50), steps=[1, 2, 2.5, 5, 10], symmetric=True)
-    bar.update_ticks()
+    axes = figure.add_axes(layout.bar.fraction(layout.size))
+    bar = figure.colorbar(mappable, cax=axes, extend="neither" if wording.ticks else "both")
+    if wording.ticks:
+        bar.set_ticks([limit * place for place, _ in wording.ticks], labels=[label for _, label in wording.ticks])
+    else:
+        bar.locator = MaxNLocator(max(4, layout.bar.height // 50), steps=[1, 2, 2.5, 5, 10], symmetric=True)
+        bar.update_ticks()
     bar.ax.tick_params(labelsize=13)
-    bar.set_label(label, fontsize=15 if layout.bar.height > 300 else 13)
+    bar.set_label(wording.bar, fontsize=15 if layout.bar.height > 300 else 13)
 
 
 def _swatch(figure: Figure, size: tuple[int, int], box: Box, colour: tuple[int, int, int]) -> None:

@@ -11,14 +11,14 @@ from PIL import Image, ImageDraw, ImageFont
 from PIL.PngImagePlugin import PngInfo
 
 from rsmpm_ti.errors import refuse
-from rsmpm_ti.paint.chrome import MEGA, MILLI, Wording, draw_chrome
+from rsmpm_ti.paint.chrome import MEGA, MILLI, draw_chrome
 from rsmpm_ti.paint.ggui import Ggui, probe
+from rsmpm_ti.paint.kinds import Look, crack_look, cracking_look, margin_look, stress_look
 from rsmpm_ti.paint.layout import TEXT_LINE, Box, lay_out
 from rsmpm_ti.paint.raster import Raster
-from rsmpm_ti.paint.view import crack_palette, stress_palette
 from rsmpm_ti.snapshot import SHEAR, TENSION, Snapshot
 
-KINDS = ("stress", "cracks")
+KINDS = ("stress", "cracks", "margin")
 PAINTERS = {"raster": Raster, "ggui": Ggui}
 TEXT_LINES = 8  # the most that `FramePainter._lines` writes
 SMOOTH = 3  # the inset's curve is drawn this many times larger and reduced
@@ -28,11 +28,12 @@ MARGIN = 10  # pixels around the inset's box that its marker may stick out
 class FramePainter:
     """Paints frames of one kind, all of one size and with the same limits, as a movie needs them.
 
-    kind: "stress" (largest principal stress) or "cracks" (failure modes); lower, upper: corners of the specimen [m],
-    in 3D those of the face seen along z; stress_limit: end of the colour bar [Pa], the same for both signs (needed for
-    "stress"); strain_limit [1] and load_limit [Pa]: ends of the inset's axes, both or there is no inset; backend:
-    "raster" or "ggui"; size: even (width, height) in pixels, by default from the specimen's shape; convention: written
-    on the colour bar; strain_name, load_name: axes of the inset.
+    kind: "stress" (largest principal stress), "cracks" (failure modes) or "margin" (how near to failure); lower, upper:
+    corners of the specimen [m], in 3D those of the face seen along z; stress_limit: end of the colour bar [Pa], the
+    same for both signs (needed for "stress"); strain_limit [1] and load_limit [Pa]: ends of the inset's axes, both or
+    there is no inset; softens: "cracks" tints rock that has lost less than half of its strength; backend: "raster" or
+    "ggui"; size: even (width, height) in pixels, by default from the specimen's shape; convention: written on the
+    colour bar of "stress"; strain_name, load_name: axes of the inset.
 
     Allocates Taichi fields: make it after `ti.init`, and `close` it before the next.
     """
@@ -46,6 +47,7 @@ class FramePainter:
         stress_limit: float | None = None,
         strain_limit: float | None = None,
         load_limit: float | None = None,
+        softens: bool = False,
         backend: str = "raster",
         size: tuple[int, int] | None = None,
         title: str | None = None,
@@ -69,32 +71,29 @@ class FramePainter:
 
         self.kind = kind
         self.backend = backend
-        self.layout = lay_out(lower[:2], upper[:2], size, TEXT_LINES)
-        self._palette = stress_palette(stress_limit) if kind == "stress" else crack_palette()
-        inset = {"inset_x": f"{strain_name} [%]", "inset_y": f"{load_name} [MPa]"}
-        modes = ("failed in tension", self._palette.tension), ("failed in shear", self._palette.shear)
-        if kind == "stress":
-            self.wording = Wording(
-                title=title or "Maximum principal stress $\\sigma_1$",
-                bar=f"$\\sigma_1$ [MPa]   ({convention})",
-                legend=(*modes, ("void", self._palette.void)),
-                **inset,
-            )
-        else:
-            intact = tuple(int(c) for c in self._palette.ramp[0])
-            self.wording = Wording(
-                title=title or "Crack growth", bar=None, legend=(*modes, ("intact", intact)), **inset
-            )
+        look = self._look(stress_limit, softens, title, convention, strain_name, load_name)
+        self._palette, self.wording, self._value = look.palette, look.wording, look.value
+        self.layout = lay_out(lower[:2], upper[:2], size, TEXT_LINES, len(look.wording.legend))
         self._limits = None if strain_limit is None or load_limit is None else (strain_limit, load_limit)
         self._chrome = functools.cache(lambda limits: draw_chrome(self.layout, self._palette, self.wording, limits))
         self._painter = PAINTERS[backend](self.layout.view, self._palette)
+
+    def _look(self, stress_limit, softens, title, convention, strain_name, load_name) -> Look:
+        inset = {"inset_x": f"{strain_name} [%]", "inset_y": f"{load_name} [MPa]"}
+        if self.kind == "stress":
+            return stress_look(stress_limit, title, convention, inset)
+        if self.kind == "margin":
+            return margin_look(title, inset)
+        return cracking_look(title, inset) if softens else crack_look(title, inset)
 
     def panel(self, snapshot: Snapshot) -> np.ndarray:
         """The particles alone, uint8 [h, w, 3]; `extent_mm` says what it spans."""
         shown = slab(snapshot)
         dim = snapshot.x.shape[1]
         half = 0.5 * np.maximum(snapshot.volume[shown], 0.0) ** (1.0 / dim)
-        value = snapshot.sigma_1[shown] if self.kind == "stress" else None
+        value = self._value(snapshot)
+        if value is not None:
+            value = value[shown]
         return self._painter.image(snapshot.x[shown], half, snapshot.failure_mode[shown], value)
 
     @property

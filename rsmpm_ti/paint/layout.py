@@ -60,7 +60,11 @@ class Layout:
 
 
 def lay_out(
-    lower: tuple[float, float], upper: tuple[float, float], size: tuple[int, int] | None, text_lines: int
+    lower: tuple[float, float],
+    upper: tuple[float, float],
+    size: tuple[int, int] | None,
+    text_lines: int,
+    legend_lines: int,
 ) -> Layout:
     """The layout for a specimen between two corners [m]; without a size, the frame takes the specimen's shape."""
     pad = PAD * max(upper[0] - lower[0], upper[1] - lower[1])
@@ -88,7 +92,8 @@ def lay_out(
     inset = Box(left=left + 45, top=TOP + column_height - INSET[1] - 45, width=INSET[0], height=INSET[1])
     text_height = text_lines * TEXT_LINE
     text = Box(left=left, top=inset.top - 40 - SPACE - text_height, width=45 + INSET[0], height=text_height)
-    legend = Box(left=left, top=text.top - SPACE - 3 * LEGEND_LINE, width=text.width, height=3 * LEGEND_LINE)
+    legend_height = legend_lines * LEGEND_LINE
+    legend = Box(left=left, top=text.top - SPACE - legend_height, width=text.width, height=legend_height)
     bar = Box(left=left, top=TOP, width=34, height=min(545, legend.top - SPACE - TOP))
     view = View(lower=lower, upper=upper, width=width, height=height)
     return Layout(size=size, view=view, panel=panel, bar=bar, legend=legend, text=text, inset=inset)

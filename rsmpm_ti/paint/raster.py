@@ -30,6 +30,7 @@ class Raster:
         self.skipped = 0  # particles of the last image that had no finite position, size or value
         self._area = ti.field(ti.i32, shape=(3, view.height, view.width))
         self._value = ti.field(ti.i64, shape=(view.height, view.width))
+        self._side = ti.field(ti.i64, shape=(view.height, view.width)) if palette.folded else self._value
 
     def image(self, x: np.ndarray, half: np.ndarray, mode: np.ndarray, value: np.ndarray | None = None) -> np.ndarray:
         """The panel, uint8 [height, width, 3], first row on top.
@@ -43,8 +44,10 @@ class Raster:
         image = np.empty((self.view.height, self.view.width, 3), dtype=np.uint8)
         self._area.fill(0)
         self._value.fill(0)
-        splat(self._area, self._value, squares.column, squares.row, squares.half, fixed, squares.mode)
-        resolve(self._area, self._value, self.palette.ramp, self.palette.marks(), round(GAP * spacing), image)
+        self._side.fill(0)
+        sums, folded = (self._area, self._value, self._side), self.palette.folded
+        splat(*sums, folded, squares.column, squares.row, squares.half, fixed, squares.mode)
+        resolve(*sums, folded, self.palette.ramp, self.palette.marks(), round(GAP * spacing), image)
         return image
 
     def close(self) -> None:
@@ -55,6 +58,8 @@ class Raster:
 def splat(
     area: ti.template(),
     value: ti.template(),
+    side: ti.template(),
+    folded: ti.template(),
     column: ti.types.ndarray(dtype=ti.f32, ndim=1),
     row: ti.types.ndarray(dtype=ti.f32, ndim=1),
     half: ti.types.ndarray(dtype=ti.f32, ndim=1),
@@ -63,7 +68,8 @@ def splat(
 ):
     """Adds to each pixel the area of each square in it, by mode, and area times value of the intact ones.
 
-    What failed particles carry is hidden under the colour of their mode, so it is kept out of the average.
+    What failed particles carry is hidden under the colour of their mode, so it is kept out of the average. `folded`:
+    `value` gets sizes and `side` signed values.
     """
     for p in range(column.shape[0]):
         left, right = column[p] - half[p], column[p] + half[p]
@@ -74,7 +80,11 @@ def splat(
                 a = ti.round(overlap * (ti.min(right, j + 1) - ti.max(left, j)) * UNIT, ti.i32)
                 area[p_mode[p], i, j] += a
                 if p_mode[p] == 0:
-                    value[i, j] += ti.cast(a, ti.i64) * p_value[p]
+                    if ti.static(folded):
+                        side[i, j] += ti.cast(a, ti.i64) * p_value[p]
+                        value[i, j] += ti.cast(a, ti.i64) * ti.abs(p_value[p])
+                    else:
+                        value[i, j] += ti.cast(a, ti.i64) * p_value[p]
 
 
 @ti.func
@@ -101,6 +111,8 @@ def reach(area, i, j, di, dj, gap):
 def resolve(
     area: ti.template(),
     value: ti.template(),
+    side: ti.template(),
+    folded: ti.template(),
     ramp: ti.types.ndarray(dtype=ti.f32, ndim=2),
     marks: ti.types.ndarray(dtype=ti.f32, ndim=2),
     gap: ti.i32,
@@ -128,6 +140,8 @@ def resolve(
         tension = ti.min(1.0, area[1, k, m] / full)
         shear = ti.min(1.0 - tension, area[2, k, m] / full)
         mean = value[k, m] / ti.max(1, area[0, k, m]) / UNIT
+        if ti.static(folded):
+            mean = ti.select(side[k, m] < 0, -mean, mean)
         place = (ti.min(1.0, ti.max(-1.0, mean)) + 1.0) * 0.5 * (ramp.shape[0] - 1)
         left = ti.min(int(place), ramp.shape[0] - 2)
         for c in ti.static(range(3)):

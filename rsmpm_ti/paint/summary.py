@@ -46,10 +46,9 @@ def summary_picture(
     _curve(curve, history, painter.wording, acoustic)
     _cracks(cracks, painter, snapshot)
     _paths(cracks, paths)
-    palette = crack_palette()
-    colours = ("failed in tension", palette.tension), ("failed in shear", palette.shear), ("intact", palette.ramp[0])
-    patches = [Patch(facecolor=np.array(c) / 255.0, edgecolor="#333333", label=name) for name, c in colours]
-    figure.legend(handles=patches, fontsize=12, loc="outside lower right", ncols=3, frameon=False)
+    legend = painter.wording.legend
+    patches = [Patch(facecolor=np.array(c) / 255.0, edgecolor="#333333", label=name) for name, c in legend]
+    figure.legend(handles=patches, fontsize=12, loc="outside lower right", ncols=len(legend), frameon=False)
     figure.canvas.draw()
     return write_png(path, np.asarray(figure.canvas.buffer_rgba())[..., :3].copy(), painter=painter.backend)
 

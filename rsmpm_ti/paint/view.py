@@ -1,6 +1,6 @@
 """What a painter needs to know before the first particle: which part of space is shown, and in which colours."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import NamedTuple
 
 import numpy as np
@@ -28,7 +28,8 @@ class Palette:
     """Colours of one kind of frame, 0 to 255.
 
     `ramp`, float32 [k, 3], runs from value -limit to value +limit; `void`, `tension` and `shear` stand for no rock and
-    for the two failure modes.
+    for the two failure modes. `folded`: the halves of the ramp show two kinds of rock, each darker with the distance
+    from the middle; a pixel that sees both shows the kind that weighs more and the mean distance, not their difference.
     """
 
     ramp: np.ndarray
@@ -36,6 +37,7 @@ class Palette:
     void: tuple[int, int, int]
     tension: tuple[int, int, int]
     shear: tuple[int, int, int]
+    folded: bool = False
 
     def marks(self) -> np.ndarray:
         """Colours that failure modes 1 and 2 select, after that of the void, float32 [3, 3]."""
@@ -60,6 +62,22 @@ def crack_palette() -> Palette:
     """Failure modes alone, in two colours that colour-blind readers can tell apart, on grey rock."""
     ramp = np.tile(np.array((0xBD, 0xBD, 0xB2), dtype=np.float32), (2, 1))
     return Palette(ramp=ramp, limit=1.0, void=(255, 255, 255), tension=(0xD5, 0x5E, 0x00), shear=(0x00, 0x72, 0xB2))
+
+
+def cracking_palette() -> Palette:
+    """Failure modes, and in pale tints of their colours rock that has begun to fail: shear below 0, tension above."""
+    plain = crack_palette()
+    intact, ends = plain.ramp[0], np.array(((0x8C, 0xC4, 0xEC), (0xFF, 0xC0, 0x87)), dtype=np.float32)
+    share = np.abs(np.linspace(-1.0, 1.0, 257, dtype=np.float32))[:, None]
+    ramp = (1.0 - share) * intact + share * np.repeat(ends, (128, 129), axis=0)
+    return replace(plain, ramp=ramp, folded=True)
+
+
+def margin_palette() -> Palette:
+    """Signed load: bam, pale at 0, shear green below, tension purple above; without its darkest, so black shows."""
+    ramp = np.asarray(cm.bam(np.linspace(0.92, 0.08, 257)), dtype=np.float32)[:, :3] * 255.0
+    marks = {"void": (184, 184, 184), "tension": (0, 0, 0), "shear": (0xFF, 0xC2, 0x0A)}
+    return Palette(ramp=ramp, limit=1.0, **marks, folded=True)
 
 
 class Squares(NamedTuple):
