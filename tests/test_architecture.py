@@ -14,7 +14,7 @@ LAYERS = """
     errors units snapshot tensors regions seeding heterogeneity shape transfer averaging softening directional laws
     confinement boundaries starts spec traversal state sorting crack_stress material node_update kernels smoothing
     tracking margin measure stepper observe drive nominal crack_path cracks flaw_tips crack_growth aperture crack_bands
-    fragments emission summary output fracture record paint frames library run scene verify bench
+    fragments emission summary output fracture record paint frames library run scene verify study bench
 """.split()
 """A module imports only from modules to the left of its own name."""
 
@@ -26,10 +26,11 @@ VERIFY_LAYERS = """
     triaxial cell material_point crack_forms crack_paths cracked_cell envelope disc hole slit_field first_failure
     weibull catalogue report running __main__
 """.split()
+STUDY_LAYERS = "runs turned grid_independence fracture_energy catalogue __main__".split()
 BENCH_LAYERS = "settings yardstick speed measures front error __main__".split()
-"""The same within `rsmpm_ti/verify/` and `rsmpm_ti/bench/`, which see every layer above their package's name."""
+"""The same within `rsmpm_ti/verify/`, `rsmpm_ti/study/` and `rsmpm_ti/bench/`, which see every layer above their package's name."""
 
-ROOMS = {"paint": PAINT_LAYERS, "verify": VERIFY_LAYERS, "bench": BENCH_LAYERS}
+ROOMS = {"paint": PAINT_LAYERS, "verify": VERIFY_LAYERS, "study": STUDY_LAYERS, "bench": BENCH_LAYERS}
 
 PAINT_SEES = {"errors", "units", "snapshot"}
 WITHOUT_TAICHI = """
@@ -96,6 +97,7 @@ def allowed_imports(module: str) -> set[str]:
     painters = [f"paint.{name}" for name in PAINT_LAYERS]
     verifiers = [f"verify.{name}" for name in VERIFY_LAYERS]
     benches = [f"bench.{name}" for name in BENCH_LAYERS]
+    studies = [f"study.{name}" for name in STUDY_LAYERS]
     if module == "":  # rsmpm_ti/__init__.py hands out the surface
         return {"library", "run"}
     if module == "paint":
@@ -107,7 +109,7 @@ def allowed_imports(module: str) -> set[str]:
         above |= set(painters)
     if "verify" in above:
         above |= set(verifiers)
-    for rooms in (verifiers, benches):
+    for rooms in (verifiers, studies, benches):
         if module in rooms:
             above |= set(rooms[: rooms.index(module)]) | {""}
     return above
