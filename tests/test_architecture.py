@@ -28,7 +28,7 @@ VERIFY_LAYERS = """
 """.split()
 STUDY_LAYERS = "runs turned grid_independence fracture_energy catalogue __main__".split()
 BENCH_LAYERS = "settings yardstick speed measures front error __main__".split()
-"""The same within `rsmpm_ti/verify/`, `rsmpm_ti/study/` and `rsmpm_ti/bench/`, which see every layer above their package's name."""
+"""The same within the packages verify, study and bench, which see every layer above their own name."""
 
 ROOMS = {"paint": PAINT_LAYERS, "verify": VERIFY_LAYERS, "study": STUDY_LAYERS, "bench": BENCH_LAYERS}
 

@@ -8,7 +8,6 @@ import taichi as ti
 
 from rsmpm_ti import load_scene
 from rsmpm_ti.averaging import Local
-from rsmpm_ti.cracks import wings
 from rsmpm_ti.drive import Drive
 from rsmpm_ti.errors import UnstableRun
 from rsmpm_ti.laws import CompressionOnly
@@ -27,8 +26,8 @@ CAP = 5e-3
 SMOOTH_START = 2e-3
 """Time in which the rate of loading rises [s]."""
 
-GROWN = 22e-3
-"""Wings of this length along the load axis end a run [m]."""
+GROWN, LOOKS = 21e-3, 200
+"""A wing is measured when it is this long along the load axis [m]; looks at it in a run."""
 
 
 @ti.data_oriented
@@ -87,43 +86,54 @@ def turned_scene(*, angle: float, dx: float, seed: int, paper: bool, end: float,
     )
 
 
+def opened(drive: Drive, dx: float) -> tuple[np.ndarray, np.ndarray]:
+    """Places [m] of particles that have cracked in tension, and how far each has opened [m]."""
+    particles = drive.sim.particles
+    place = particles.reference.to_numpy() + particles.u.to_numpy()
+    if particles.cracks:
+        gap = particles.opening.to_numpy()[:, 0] * drive.sim.band
+    else:
+        gap = np.maximum(particles.J.to_numpy() - 1.0, 0.0) * dx
+    cracked = (particles.mode.to_numpy() == TENSION) & (gap > 0.0)
+    return place[cracked], gap[cracked]
+
+
 def grow(*, angle: float, dx: float, seed: int, paper: bool, end: float, time_scale: float) -> dict:
-    """Load until both wings are GROWN long: all failures and what has opened, in the specimen's frame [m, Pa]."""
+    """Load until both wings are GROWN long, or up to `end` [Pa].
+
+    Of each wing, "0" the upper and "1" the lower one, turned back and the lower one by 180 degrees: place and gap of
+    what has opened when it was GROWN (or at the end), place of its first failure; all [m]. Loads [Pa].
+    """
     real = ti.lang.impl.get_runtime().default_fp
     scene = turned_scene(angle=angle, dx=dx, seed=seed, paper=paper, end=end, time_scale=time_scale)
     drive = Drive(scene, scene.particles(), real)
     traction = scene.loading.force_field
     turn = math.radians(angle)
     back = np.array([[math.cos(turn), -math.sin(turn)], [math.sin(turn), math.cos(turn)]])
-    flaw = replace(scene.bodies[0].region.removed[0], centre=(0.0, 0.0), angle=45.0)
-    stopped, looks = "", 200
-    for look in range(1, looks + 1):
+    tip = 0.5 * scene.bodies[0].region.removed[0].length * math.sin(math.radians(45.0))
+    wings, stopped = {}, ""
+    for look in range(1, LOOKS + 1):
         try:
-            drive.advance(max(0, round(drive.clock.total * look / looks) - drive.clock.step))
+            drive.advance(max(0, round(drive.clock.total * look / LOOKS) - drive.clock.step))
         except UnstableRun as error:
             stopped = str(error)
-            break
         events = read_events(drive.sim)
-        x = (events.x.astype(float) - 0.5 * SIDE) @ back
-        pair = wings(x[events.mode == TENSION], flaw, 0.5 * dx)
-        if all(wing is not None and np.abs(wing.points[:, 1] - wing.tip[1]).max() > GROWN for wing in pair):
+        failed = (events.x[events.mode == TENSION].astype(float) - 0.5 * SIDE) @ back
+        for name, sign in (("0", 1.0), ("1", -1.0)):
+            side = failed[sign * failed[:, 1] > 0.0] * sign
+            grown = len(side) > 0 and side[:, 1].max() - tip > GROWN
+            if name not in wings and (grown or stopped or look == LOOKS) and len(side):
+                place, gap = opened(drive, dx)
+                place = (place.astype(float) - 0.5 * SIDE) @ back * sign
+                half = place[:, 1] > 0.0
+                wings[name] = {"x": place[half], "gap": gap[half], "start": side[0]}
+        if len(wings) == 2 or stopped:
             break
-    particles = drive.sim.particles
-    place = particles.reference.to_numpy() + particles.u.to_numpy()
-    # how far a particle has opened: what makes a crack out of many that have failed
-    if particles.cracks:
-        gap = particles.opening.to_numpy()[:, 0] * drive.sim.band
-    else:
-        gap = np.maximum(particles.J.to_numpy() - 1.0, 0.0) * dx
-    cracked = (particles.mode.to_numpy() == 1) & (gap > 0.0)
     return {
-        "x": x,
-        "crack": (place[cracked] - 0.5 * SIDE) @ back,
-        "gap": gap[cracked],
-        "mode": events.mode,
-        "load": traction.load(events.time),
+        "load": traction.load(drive.clock.time),
         "onset": traction.load(min(drive.sim.events.onset[None], events.time.min(initial=np.inf))),
         "particles": np.array(drive.sim.particles.count),
         "steps": np.array(drive.clock.step),
         "stopped": np.array(stopped),
+        **{f"{key}_{name}": value for name, wing in wings.items() for key, value in wing.items()},
     }
