@@ -26,6 +26,8 @@ class EventTable:
     sigma_3: np.ndarray
     released: np.ndarray
     id: np.ndarray
+    onset: float = np.inf
+    """When a particle of rock with a direction first began to lose strength [s]: not after the first event."""
 
     def __len__(self) -> int:
         return len(self.time)
@@ -39,7 +41,8 @@ def read_events(sim: Simulation) -> EventTable:
         for name in ("time", "x", "mode", "sigma_1", "sigma_3", "released", "id")
     }
     order = np.lexsort((columns["id"], columns["time"]))
-    return EventTable(**{name: column[order] for name, column in columns.items()})
+    columns = {name: column[order] for name, column in columns.items()}
+    return EventTable(**columns, onset=float(events.onset[None]))
 
 
 def take_snapshot(sim: Simulation, time: float) -> Snapshot:

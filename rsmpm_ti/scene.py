@@ -160,6 +160,8 @@ def report(result) -> str:
         f"{s['particles']} particles, {s['steps']} steps: {s['compile_s']:.1f} s of start-up, {s['wall_s']:.1f} s "
         f"of run, {s['painting_s']:.1f} s of it painting; {speed:.1f} M particle-steps/s"
     ]
+    if s["onset_stress_Pa"] is not None and s["onset_stress_Pa"] != s["first_failure_stress_Pa"]:
+        lines.append(f"strength begins to be lost at {s['onset_stress_Pa'] / 1e6:.3f} MPa; failed: half of it lost")
     if s["first_failure_stress_Pa"] is not None:
         place = ", ".join(f"{1e3 * c:.2f}" for c in s["first_failure_position_m"])
         stress = s["first_failure_stress_Pa"] / 1e6

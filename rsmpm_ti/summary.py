@@ -1,5 +1,7 @@
 """The numbers of a run that people quote: modulus, first failure, peak, initiation angles, and their trust."""
 
+import bisect
+
 import numpy as np
 
 from rsmpm_ti.cracks import half_turn_mismatch, wings
@@ -19,15 +21,20 @@ SYMMETRY_LENGTH = 15e-3
 def summarise(scene: Scene, history: np.ndarray, events: EventTable, energy_start: float) -> dict:
     """The physical part of summary.json. Stresses [Pa], lengths [m], angles [degrees]; None where not defined.
 
+    Onset: a particle first begins to lose strength; first failure: one has lost half of it, the first event. Without
+    fracture energy they are one. Modulus and quasi-static measures are of what comes before onset.
     Under confinement axial stresses are whole ones, the pressure included, and strains count from the confined state;
     the modulus is still the slope. The platen imbalance is over what the platens add, the kinetic share over all the
     elastic energy, that of the confinement included.
     """
     middle, stress, strain = loading_curve(history)
     first = float(events.time[0]) if len(events) else np.inf
-    before = history["time_s"] < first
+    onset = min(events.onset, first)
+    before = history["time_s"] < onset
     out = {
         "confinement_Pa": scene.loading.confinement,
+        "onset_stress_Pa": None,
+        "onset_strain": None,
         "first_failure_stress_Pa": None,
         "first_failure_strain": None,
         "first_failure_time_s": None,
@@ -43,14 +50,24 @@ def summarise(scene: Scene, history: np.ndarray, events: EventTable, energy_star
         out["first_failure_time_s"] = first
         out["first_failure_mode"] = MODE_NAMES[events.mode[0]]
         out["first_failure_position_m"] = events.x[0].tolist()
-    out |= _stress_numbers(stress, strain, middle, before, first, history, scene.loading.confinement)
+    for name, time in (("onset", onset), ("first_failure", first)):
+        out[f"{name}_stress_Pa"], out[f"{name}_strain"] = _load_at(time, history["time_s"], middle, stress, strain)
+    out |= _stress_numbers(stress, strain, middle, before, history, scene.loading.confinement)
     out |= _energy_numbers(history, before, energy_start)
     if scene.dim == 2:
         out |= _crack_numbers(scene, events)
     return out
 
 
-def _stress_numbers(stress, strain, middle, before, first, history, confinement) -> dict:
+def _load_at(time: float, rows, middle, stress, strain) -> tuple[float | None, float | None]:
+    """Stress and strain at a time, extrapolated from the last rows before it: the row that holds it has lost stress."""
+    k = np.flatnonzero(rows < time)[-4:]
+    if len(k) < 4 or not np.isfinite(time) or not np.isfinite(stress[k]).all():
+        return None, None
+    return tuple(float(np.polyval(np.polyfit(middle[k], values[k], 1), time)) for values in (stress, strain))
+
+
+def _stress_numbers(stress, strain, middle, before, history, confinement) -> dict:
     names = ("apparent_modulus_Pa", "peak_stress_Pa", "platen_imbalance", "platen_imbalance_max", "kinetic_share")
     out = dict.fromkeys(names)
     if len(stress) < 2 or not np.isfinite(stress).all():
@@ -60,11 +77,6 @@ def _stress_numbers(stress, strain, middle, before, first, history, confinement)
     elastic = before & (middle > ELASTIC_SHARE[0] * end) & (middle < ELASTIC_SHARE[1] * end)
     if elastic.sum() >= 3:
         out["apparent_modulus_Pa"] = float(np.polyfit(strain[elastic], stress[elastic], 1)[0])
-    if before.sum() >= 4 and np.isfinite(first):
-        # extrapolated from the last rows before the event: the row that holds it has already lost stress
-        k = np.flatnonzero(before)[-4:]
-        out["first_failure_stress_Pa"] = float(np.polyval(np.polyfit(middle[k], stress[k], 1), first))
-        out["first_failure_strain"] = float(np.polyval(np.polyfit(middle[k], strain[k], 1), first))
     difference = np.abs(history["stress_top_Pa"] - history["stress_bottom_Pa"])
     added = np.abs(stress - confinement)
     if before.any() and added[before].mean() > 0.0:
@@ -110,6 +122,21 @@ def _crack_numbers(scene: Scene, events: EventTable) -> dict:
             None if w is None else float(np.abs(w.points[:, axis] - plane).min())
             for w, plane in zip(pair, planes, strict=True)
         ]
+        pair = _young_wings(events.x[events.mode == TENSION], slit, spacing, axis)
         mismatch = half_turn_mismatch(pair, slit, axis, SYMMETRY_LENGTH, 2.0 * scene.domain.dx)
         out["half_turn_mismatch_m"] = None if np.isnan(mismatch) else mismatch
     return out
+
+
+def _young_wings(x: np.ndarray, slit, spacing: float, axis: int) -> list:
+    """The wings as they are when the shorter has grown to SYMMETRY_LENGTH: later failures belong to other cracks too.
+
+    x: places of tension failures in order of time.
+    """
+
+    def grown(count: int) -> bool:
+        pair = wings(x[:count], slit, spacing)
+        return all(w is not None and np.ptp(w.points[:, axis]) >= SYMMETRY_LENGTH for w in pair)
+
+    count = bisect.bisect_left(range(len(x)), True, key=grown)
+    return wings(x[: count + 1], slit, spacing)
