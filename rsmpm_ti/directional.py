@@ -86,15 +86,15 @@ def check_cracks(rock, shape, dim: int, dx: float) -> None:
             raise refuse("rock.averaging.length", rock.averaging.length, f"at least {least:.4g} m here", remedy)
     if rock.criterion.breaks:
         criterion, elasticity = rock.criterion, rock.elasticity
-        _check_snap_back("G_f_I", criterion.tensile_strength, law.softening, elasticity.E, shape.crack_band * dx)
-        _check_snap_back("G_f_II", criterion.cohesion, law.softening, elasticity.mu, shape.crack_band * dx)
+        _check_snap_back("G_f_I", criterion.tensile_strength, law.softening, elasticity.E, shape.crack_band, dx)
+        _check_snap_back("G_f_II", criterion.cohesion, law.softening, elasticity.mu, shape.crack_band, dx)
 
 
-def _check_snap_back(name: str, strength: float, softening, modulus: float, band: float) -> None:
-    """A band must not lose strength faster than the rock in it unloads: Bazant & Oh (1983), eq. 34."""
+def _check_snap_back(name: str, strength: float, softening, modulus: float, cells: float, dx: float) -> None:
+    """A band of `cells` must not lose strength faster than the rock in it unloads: Bazant & Oh (1983), eq. 34."""
     energy = getattr(softening, name)
-    fall = softening.steepest(strength, energy) * band
+    fall = softening.steepest(strength, energy) * cells * dx
     if not fall < modulus:
-        remedy = f"use a dx at least {fall / modulus:.3g} times smaller, or more energy"
-        allowed = f"large enough that a crack band of {1e3 * band:.4g} mm does not snap back"
+        remedy = f"use a dx below {modulus / fall * dx:.4g} m, or more energy"
+        allowed = f"large enough that a crack band of {1e3 * cells * dx:.4g} mm does not snap back"
         raise refuse(f"after_failure.softening.{name}", energy, allowed, remedy)

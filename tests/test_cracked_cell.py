@@ -194,8 +194,8 @@ def test_band_that_would_snap_back_is_refused_with_a_dx_that_would_do(shape, kin
     largest = twice * 2.0 * modulus / strength**2 / shape.crack_band
     message = refusal(lambda: scene(dx=3.0 * largest, shape=shape, after_failure=law))
     assert message.startswith(f"after_failure.softening.{name} = 2.0 is refused: it must be large enough")
-    times = float(re.search(r"at least (\S+) times smaller", message)[1])
-    assert times == pytest.approx(3.0, rel=0.01)  # printed with three digits
+    named = float(re.search(r"a dx below (\S+) m", message)[1])
+    assert named == pytest.approx(largest, rel=1e-3)  # printed with four digits
     assert f"softening.{name}" in refusal(lambda: scene(dx=1.01 * largest, shape=shape, after_failure=law))
     assert scene(dx=0.99 * largest, shape=shape, after_failure=law).rock.after_failure is law
 

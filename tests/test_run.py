@@ -91,7 +91,7 @@ def test_vtu_files_carry_the_promised_fields_and_the_cracks(run_folder):
     mesh = meshio.read(run_folder / "particles_0010.vtu")
     assert set(mesh.point_data) == {
         "displacement", "velocity", "stress", "sigma_1", "sigma_3", "failure_mode", "failure_time", "volume",
-        "strength_factor",
+        "strength_factor", "margin", "governs", "damage", "aperture_m",
     }  # fmt: skip
     summary = json.loads((run_folder / "summary.json").read_text())
     assert len(mesh.points) == summary["particles"]
