@@ -26,8 +26,8 @@ CAP = 5e-3
 SMOOTH_START = 2e-3
 """Time in which the rate of loading rises [s]."""
 
-GROWN, LOOKS = 21e-3, 200
-"""A wing is measured when it is this long along the load axis [m]; looks at it in a run."""
+YOUNG, GROWN, LOOKS = 5e-3, 21e-3, 200
+"""A wing is measured when it is so long along the load axis [m]: its first direction, then its path. Looks in a run."""
 
 
 @ti.data_oriented
@@ -102,7 +102,8 @@ def grow(*, angle: float, dx: float, seed: int, paper: bool, end: float, time_sc
     """Load until both wings are GROWN long, or up to `end` [Pa].
 
     Of each wing, "0" the upper and "1" the lower one, turned back and the lower one by 180 degrees: place and gap of
-    what has opened when it was GROWN (or at the end), place of its first failure; all [m]. Loads [Pa].
+    what has opened when it was YOUNG and when it was GROWN (or at the end), place of its first failure; all [m].
+    Loads [Pa].
     """
     real = ti.lang.impl.get_runtime().default_fp
     scene = turned_scene(angle=angle, dx=dx, seed=seed, paper=paper, end=end, time_scale=time_scale)
@@ -121,13 +122,15 @@ def grow(*, angle: float, dx: float, seed: int, paper: bool, end: float, time_sc
         failed = (events.x[events.mode == TENSION].astype(float) - 0.5 * SIDE) @ back
         for name, sign in (("0", 1.0), ("1", -1.0)):
             side = failed[sign * failed[:, 1] > 0.0] * sign
-            grown = len(side) > 0 and side[:, 1].max() - tip > GROWN
-            if name not in wings and (grown or stopped or look == LOOKS) and len(side):
-                place, gap = opened(drive, dx)
-                place = (place.astype(float) - 0.5 * SIDE) @ back * sign
-                half = place[:, 1] > 0.0
-                wings[name] = {"x": place[half], "gap": gap[half], "start": side[0]}
-        if len(wings) == 2 or stopped:
+            for age, length in (("young", YOUNG), ("grown", GROWN)):
+                ripe = len(side) > 0 and (side[:, 1].max() - tip > length or stopped or look == LOOKS)
+                if ripe and f"{age}_x_{name}" not in wings:
+                    place, gap = opened(drive, dx)
+                    place = (place.astype(float) - 0.5 * SIDE) @ back * sign
+                    half = place[:, 1] > 0.0
+                    wings |= {f"{age}_x_{name}": place[half], f"{age}_gap_{name}": gap[half]}
+                    wings[f"start_{name}"] = side[0]
+        if {"grown_x_0", "grown_x_1"} <= wings.keys() or stopped:
             break
     return {
         "load": traction.load(drive.clock.time),
@@ -135,5 +138,5 @@ def grow(*, angle: float, dx: float, seed: int, paper: bool, end: float, time_sc
         "particles": np.array(drive.sim.particles.count),
         "steps": np.array(drive.clock.step),
         "stopped": np.array(stopped),
-        **{f"{key}_{name}": value for name, wing in wings.items() for key, value in wing.items()},
+        **wings,
     }
