@@ -1,5 +1,7 @@
 """Crack paths that do not know the grid: the specimen turned against it, three seeds, three cell sizes."""
 
+import itertools
+
 import numpy as np
 
 from rsmpm_ti.regions import Slit
@@ -66,13 +68,15 @@ def read_wings(result: dict) -> list[tuple[float, np.ndarray]]:
 
 
 def spread(paths: list[np.ndarray]) -> tuple[float, float]:
-    """Largest and root-mean-square distance between any two paths at the same height [m]."""
+    """Largest and root-mean-square distance between any two paths at the same height [m]; nan if no two meet there."""
     by_bin: dict[int, list[float]] = {}
     for path in paths:
         for lateral, along in path:
             by_bin.setdefault(round(along / BIN - 0.5), []).append(lateral)
-    gaps = np.concatenate([np.subtract.outer(np.array(v), np.array(v)).ravel() for v in by_bin.values()])
-    return float(np.abs(gaps).max()), float(np.sqrt((gaps**2).mean()))
+    gaps = np.array([abs(a - b) for places in by_bin.values() for a, b in itertools.combinations(places, 2)])
+    if not len(gaps):
+        return np.nan, np.nan
+    return float(gaps.max()), float(np.sqrt((gaps**2).mean()))
 
 
 def finish(results: dict) -> Outcome:
