@@ -73,6 +73,11 @@ def test_result_of_another_version_is_refused(stored, monkeypatch):
     assert kept(run, folder) is None
 
 
+def test_file_that_is_no_result_is_run_over(tmp_path):
+    np.savez(tmp_path / "a.npz", values=np.arange(3))
+    assert kept(Run("a", squares, {"upto": 3}), tmp_path) is None
+
+
 TIP = 0.5 * FLAW.length * FLAW.direction
 
 
@@ -122,6 +127,14 @@ def test_particles_below_the_start_or_far_aside_are_no_part_of_a_wing():
 def test_wing_that_never_began_has_no_angle_and_no_path():
     (_, first), (angle, path) = read_wings(result_of(wing(80.0)))
     assert len(first) > 10 and np.isnan(angle) and path.shape == (0, 2)
+
+
+@pytest.mark.parametrize("particles", [0, 1])
+def test_wing_of_hardly_a_particle_has_no_angle(particles):
+    stub = wing(80.0)
+    stub |= {"x": stub["x"][:particles], "gap": stub["gap"][:particles]}
+    for angle, path in read_wings(result_of(stub, stub)):
+        assert np.isnan(angle) and path.shape == (particles, 2)
 
 
 def straight(lateral: float, first: int = 0, last: int = 20) -> np.ndarray:

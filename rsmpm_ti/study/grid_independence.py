@@ -45,7 +45,8 @@ def read_wings(result: dict) -> list[tuple[float, np.ndarray]]:
     """(initiation angle [degrees], path [k, 2] [m]) of the wings of a run, the lower one turned by 180 degrees.
 
     A path is the mean place in bins of height, weighted by how far the particles there have opened. The angle is that
-    between the flaw and the line through its points in the first FIT above the first failure, weighted alike.
+    between the flaw and the line through its points in the first FIT above the first failure, weighted alike; nan
+    of a wing of fewer than two particles there.
     """
     found = []
     tip = 0.5 * FLAW.length * FLAW.direction
@@ -60,10 +61,12 @@ def read_wings(result: dict) -> list[tuple[float, np.ndarray]]:
         height = np.unique(bins)
         lateral = np.array([np.average(x[bins == b, 0], weights=gap[bins == b]) for b in height])
         first = np.linalg.norm(x - start, axis=1) < FIT
-        slope = np.polyfit(x[first, 1], x[first, 0], 1, w=np.sqrt(gap[first]))[0]
-        line = np.array([slope, 1.0]) / np.hypot(slope, 1.0)
-        path = np.stack([lateral, (height + 0.5) * BIN], axis=1)
-        found.append((float(np.degrees(np.arccos(line @ FLAW.direction))), path))
+        path, angle = np.stack([lateral, (height + 0.5) * BIN], axis=1), np.nan
+        if first.sum() > 1:
+            slope = np.polyfit(x[first, 1], x[first, 0], 1, w=np.sqrt(gap[first]))[0]
+            line = np.array([slope, 1.0]) / np.hypot(slope, 1.0)
+            angle = float(np.degrees(np.arccos(line @ FLAW.direction)))
+        found.append((angle, path))
     return found
 
 
