@@ -1,6 +1,7 @@
 """The shape of the code, read from the code: layers, what may import Taichi, and what Taichi does not forgive."""
 
 import ast
+import re
 import subprocess
 import sys
 from pathlib import Path
@@ -113,6 +114,13 @@ def allowed_imports(module: str) -> set[str]:
         if module in rooms:
             above |= set(rooms[: rooms.index(module)]) | {""}
     return above
+
+
+def test_every_package_is_installed():
+    """A folder that pyproject.toml does not name is in a checkout and in no wheel."""
+    listed = re.search(r"^packages = \[(.*?)\]$", (ROOT / "pyproject.toml").read_text(), re.MULTILINE | re.DOTALL)
+    packages = {dotted(path) for path in PACKAGE_FILES if path.name == "__init__.py"}
+    assert set(re.findall(r'"([\w.]+)"', listed[1])) == packages | {"rsmpm_ti.scenes"}
 
 
 @each(PACKAGE_FILES)

@@ -1,5 +1,7 @@
 """Crack paths that do not know the grid: the specimen turned against it, three seeds, three cell sizes."""
 
+import itertools
+
 import numpy as np
 
 from rsmpm_ti.regions import Slit
@@ -43,7 +45,8 @@ def read_wings(result: dict) -> list[tuple[float, np.ndarray]]:
     """(initiation angle [degrees], path [k, 2] [m]) of the wings of a run, the lower one turned by 180 degrees.
 
     A path is the mean place in bins of height, weighted by how far the particles there have opened. The angle is that
-    between the flaw and a line through the first FIT above the first failure, weighted alike, while the wing is young.
+    between the flaw and a line through the first FIT above the first failure, weighted alike, while the wing is young;
+    nan of a wing of fewer than two particles there.
     """
     found = []
     tip = 0.5 * FLAW.length * FLAW.direction
@@ -54,7 +57,7 @@ def read_wings(result: dict) -> list[tuple[float, np.ndarray]]:
         start, angle = result[f"start_{name}"], np.nan
         x, gap = result[f"young_x_{name}"], result[f"young_gap_{name}"]
         first = (np.linalg.norm(x - start, axis=1) < FIT) & (x[:, 1] > start[1])
-        if first.sum() > 4:
+        if first.sum() > 1:
             slope = np.polyfit(x[first, 1], x[first, 0], 1, w=np.sqrt(gap[first]))[0]
             line = np.array([slope, 1.0]) / np.hypot(slope, 1.0)
             angle = float(np.degrees(np.arccos(line @ FLAW.direction)))
@@ -69,13 +72,15 @@ def read_wings(result: dict) -> list[tuple[float, np.ndarray]]:
 
 
 def spread(paths: list[np.ndarray]) -> tuple[float, float]:
-    """Largest and root-mean-square distance between any two paths at the same height [m]."""
+    """Largest and root-mean-square distance between any two paths at the same height [m]; nan if no two meet there."""
     by_bin: dict[int, list[float]] = {}
     for path in paths:
         for lateral, along in path:
             by_bin.setdefault(round(along / BIN - 0.5), []).append(lateral)
-    gaps = np.concatenate([np.subtract.outer(np.array(v), np.array(v)).ravel() for v in by_bin.values()])
-    return float(np.abs(gaps).max()), float(np.sqrt((gaps**2).mean()))
+    gaps = np.array([abs(a - b) for places in by_bin.values() for a, b in itertools.combinations(places, 2)])
+    if not len(gaps):
+        return np.nan, np.nan
+    return float(gaps.max()), float(np.sqrt((gaps**2).mean()))
 
 
 def finish(results: dict) -> Outcome:

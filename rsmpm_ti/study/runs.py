@@ -46,7 +46,7 @@ def kept(run: Run, folder: Path) -> dict | None:
         return None
     with np.load(path, allow_pickle=False) as file:
         result = {name: file[name] for name in file.files}
-    return result if str(result.pop("stamp")) == stamp(run) else None
+    return result if str(result.pop("stamp", "")) == stamp(run) else None
 
 
 def _work(task: tuple[Run, Path]) -> tuple[str, dict, float]:

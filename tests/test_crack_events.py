@@ -1,0 +1,134 @@
+"""When a particle that softens counts as failed, what it has lost by then, and that an open crack is no instability."""
+
+import math
+
+import numpy as np
+import pytest
+import taichi as ti
+
+from rsmpm_ti.averaging import Local
+from rsmpm_ti.directional import Directional
+from rsmpm_ti.errors import UnstableRun
+from rsmpm_ti.laws import CompressionOnly, Hooke, MohrCoulomb, NoViscosity, Rock
+from rsmpm_ti.material import check_and_release, update_stress
+from rsmpm_ti.measure import survey
+from rsmpm_ti.observe import guard, read_events
+from rsmpm_ti.regions import Box
+from rsmpm_ti.shape import Linear
+from rsmpm_ti.softening import Brittle, LinearSoftening
+from rsmpm_ti.sorting import sort_particles
+from rsmpm_ti.spec import Body, Domain, Loading, Scene, Schedule
+from rsmpm_ti.state import Simulation
+from rsmpm_ti.stepper import Clock
+
+pytestmark = pytest.mark.usefixtures("taichi_f64")
+
+DX, E, NU, TENSILE, G_F = 1e-3, 17e9, 0.14, 2e6, 10.0
+M = E * (1.0 - NU) / ((1.0 + NU) * (1.0 - 2.0 * NU))
+STEP = 1e-6
+"""Strain of the slowest particle in a step: 0.9 % of what the rock bears."""
+
+
+def cell(after_failure) -> Simulation:
+    """Four particles in one cell; the band of a crack is one cell with linear functions."""
+    scene = Scene(
+        title="cell",
+        domain=Domain(lower=(0.0, 0.0), upper=(DX, DX), dx=DX),
+        bodies=(Body(region=Box(lower=(0.0, 0.0), upper=(DX, DX))),),
+        rock=Rock(
+            density=2600.0,
+            elasticity=Hooke(E=E, nu=NU),
+            criterion=MohrCoulomb(cohesion=5.95e6, friction_angle=40.0, tensile_strength=TENSILE),
+            viscosity=NoViscosity(),
+            after_failure=after_failure,
+            averaging=Local(),
+        ),
+        loading=Loading(),
+        schedule=Schedule(t_end=1e-6),
+        shape=Linear(),
+    )
+    sim = Simulation(scene, scene.particles())
+    sort_particles(sim)
+    return sim
+
+
+@ti.kernel
+def pull(sim: ti.template(), steps: int, size: float):
+    """Strain every particle along y, each 10 % faster than the one before, with the number of the step as time."""
+    for p in range(sim.particles.count):
+        for k in range(steps):
+            L = size * (1.0 + 0.1 * p) * ti.Matrix([[0.0, 0.0], [0.0, 1.0]])
+            sim.particles.L[p] = L
+            update_stress(sim, p, L, 1.0)
+            check_and_release(sim, p, 1.0, ti.cast(k + 1, ti.f64), 0)
+
+
+RATES = STEP * (1.0 + 0.1 * np.arange(4))
+
+
+def test_softening_particle_fails_when_half_of_its_strength_is_lost_and_begins_before():
+    """Linear softening: f (1 - w f/(2 G)), so half is lost at w = G/f, when strain is w/h + f/(2 M)."""
+    sim = cell(Directional(softening=LinearSoftening(G_f_I=G_F, G_f_II=100.0)))
+    pull(sim, 6000, STEP)
+    events, opening = read_events(sim), G_F / TENSILE / DX
+    assert len(events) == 4 and (events.mode == 1).all()
+    begins = math.ceil(TENSILE / M / RATES.max())
+    assert sim.events.onset[None] == pytest.approx(begins, abs=1.0)  # a step: strain is that of the mid-step increments
+    expected = (opening + 0.5 * TENSILE / M) / RATES[sim.particles.id.to_numpy().argsort()[events.id]]
+    assert begins < 0.1 * expected.min()
+    # traction lags one step behind the opening; strain is logarithmic, half of 5e-3 of itself less
+    assert events.time == pytest.approx(expected, rel=0.004, abs=2.0)
+
+
+def test_brittle_particle_fails_when_it_begins_to():
+    sim = cell(Directional(softening=Brittle()))
+    pull(sim, 200, STEP)
+    events = read_events(sim)
+    assert len(events) == 4
+    assert sim.events.onset[None] == events.time.min() == math.ceil(TENSILE / M / RATES.max())
+
+
+@pytest.mark.parametrize("softening", [Brittle(), LinearSoftening(G_f_I=G_F, G_f_II=100.0)])
+def test_ledger_is_the_sum_of_what_particles_have_lost(softening):
+    sim = cell(Directional(softening=softening))
+    pull(sim, 12_000, STEP)
+    lost = sim.particles.lost.to_numpy()
+    assert (lost > 0.0).all()
+    assert sim.ledger.released.to_numpy().sum() == pytest.approx(lost.sum(), rel=1e-12)
+    if isinstance(softening, LinearSoftening):
+        # all strength is gone at w = 2 G/f, strain 1e-2: each has lost G per area of crack, so G/h per volume; by then
+        # rock is 1 % longer, and a step's lag costs half of its load times strain
+        assert lost == pytest.approx(G_F / DX * (0.5 * DX) ** 2, rel=0.02)
+    else:  # what was stored: f^2/(2 M), or of the step that exceeds it
+        assert lost == pytest.approx(0.5 * TENSILE**2 / M * (0.5 * DX) ** 2, rel=2.5 * RATES.max() * M / TENSILE)
+
+
+@pytest.mark.parametrize("mode", [1, 2])
+def test_gaping_crack_does_not_stop_a_run_and_rock_stretched_as_far_does(mode):
+    """Pieces may part as far as they like: J of a particle between them is then a distance, not a deformation."""
+    sim = cell(Directional())
+    clock, J = Clock(sim), np.ones(4)
+    J[2] = 30.0
+    sim.particles.J.from_numpy(J)
+    failed = np.zeros(4, dtype=np.int32)
+    failed[2] = mode
+    sim.particles.mode.from_numpy(failed)
+    state = survey(sim)
+    assert state.J_max == 1.0
+    guard(sim, clock, state)
+    sim.particles.mode.from_numpy(np.roll(failed, 1))  # another particle has failed
+    with pytest.raises(UnstableRun, match=r"J = 1 \.\. 30 at step 0"):
+        guard(sim, clock, survey(sim))
+    sim.particles.mode.from_numpy(failed)
+    sim.particles.J.from_numpy(np.where(failed > 0, 0.01, 1.0))  # collapse is collapse, cracked or not
+    with pytest.raises(UnstableRun, match=r"J = 0\.01 \.\. 1 at step 0"):
+        guard(sim, clock, survey(sim))
+
+
+def test_failed_particle_of_the_paper_that_gapes_stops_a_run():
+    """Its pressure follows total J, so J there is what the law is fed with."""
+    sim = cell(CompressionOnly())
+    sim.particles.J.fill(30.0)
+    sim.particles.mode.fill(1)
+    with pytest.raises(UnstableRun, match="J = 30"):
+        guard(sim, Clock(sim), survey(sim))

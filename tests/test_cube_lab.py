@@ -1,0 +1,37 @@
+"""The slit specimen with directional cracks, coarse and short: its stiffness, and how it begins to crack."""
+
+import math
+
+import numpy as np
+import pytest
+
+from rsmpm_ti import load_scene, simulate
+
+COARSE = {"dx": 2e-3, "length": 2e-3, "flaw_width": 6e-3, "strain_end": 6e-4, "time_scale": 40.0}
+
+
+@pytest.fixture(scope="module")
+def result():
+    return simulate(load_scene("cube_lab", **COARSE), threads=1)
+
+
+def test_specimen_is_softer_than_rock_by_its_flaw(result):
+    """Elliptical hole at 45 degrees with half axes a and b: 1/E' grows by pi (a^2 + a b + b^2)/(A E').
+
+    Kachanov (1993), Adv. Appl. Mech. 30:259, of the hole's compliance in its own axes; a body of area A far larger.
+    """
+    a, b, area = 7.5e-3, 3e-3, 50e-3 * 100e-3
+    expected = 17e9 / (1.0 - 0.14**2) / (1.0 + math.pi * (a * a + a * b + b * b) / area)
+    # the flaw is fuller than an ellipse, by 16 % of its area and of its part of 5.5 %; the specimen ends 17 mm away
+    assert result.summary["apparent_modulus_Pa"] == pytest.approx(expected, rel=0.02)
+
+
+def test_it_cracks_in_tension_at_the_flaw_and_begins_to_before_it_fails(result):
+    events, centre = result.events, np.array([25e-3, 50e-3])
+    assert len(events) > 0 and events.mode[0] == 1
+    distance = np.hypot(*(events.x[0] - centre))
+    assert distance < 7.5e-3 + 2 * COARSE["dx"]  # the flaw's end, and the cells in which it is resolved
+    assert np.isfinite(result.snapshot.sigma).all()
+    begun, failed = ~np.isnan(result.snapshot.crack_angle), result.snapshot.failure_mode > 0
+    assert (begun | ~failed).all() and begun.sum() > failed.sum()  # some have lost less than half of their strength
+    assert result.summary["energy_balance_error"] < 0.02  # as every scene: design sec. 2

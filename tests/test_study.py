@@ -1,0 +1,185 @@
+"""Families of runs: what is kept and run again, how wings are read, and how the command behaves."""
+
+import math
+import subprocess
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from rsmpm_ti.study import runs
+from rsmpm_ti.study.__main__ import main
+from rsmpm_ti.study.catalogue import STUDIES
+from rsmpm_ti.study.grid_independence import BIN, FLAW, PATH, read_wings, spread
+from rsmpm_ti.study.runs import Run, kept, run_all
+
+
+def squares(*, upto: int, log: str) -> dict:
+    """Work of a run in another process: leaves a line in a file each time that it is done."""
+    with open(log, "a") as file:
+        file.write(f"{upto}\n")
+    return {"values": np.arange(upto) ** 2, "upto": upto}
+
+
+def test_run_that_is_done_is_not_run_again_unless_its_settings_changed(tmp_path):
+    log = tmp_path / "log"
+
+    def go(upto):
+        found = list(run_all([Run("one", squares, {"upto": upto, "log": str(log)})], tmp_path / "kept", 1))
+        assert [tag for tag, _, _ in found] == ["one"]
+        np.testing.assert_array_equal(found[0][1]["values"], np.arange(upto) ** 2)
+        return found[0][2], log.read_text().splitlines()
+
+    seconds, done = go(3)
+    assert done == ["3"] and seconds > 0.0
+    assert go(3) == (0.0, ["3"])
+    assert go(4)[1] == ["3", "4"]
+    assert not list(tmp_path.rglob("*.part*"))
+
+
+@pytest.fixture
+def stored(tmp_path):
+    """A kept result of Run("a", squares, {"upto": 3}), written by hand."""
+    run = Run("a", squares, {"upto": 3})
+    np.savez_compressed(tmp_path / "a.npz", stamp=np.array(runs.stamp(run)), values=np.arange(3))
+    return run, tmp_path
+
+
+def test_result_of_the_same_settings_is_kept(stored):
+    run, folder = stored
+    result = kept(run, folder)
+    assert set(result) == {"values"} and result["values"].tolist() == [0, 1, 2]
+    assert kept(Run("b", squares, {"upto": 3}), folder) is None
+
+
+@pytest.mark.parametrize(
+    "other",
+    [
+        Run("a", squares, {"upto": 4}),
+        Run("a", squares, {"upto": 3, "more": 1.0}),
+        Run("a", squares, {}),
+        Run("a", squares, {"upto": 3}, precision="f32"),
+    ],
+    ids=["value", "added", "missing", "precision"],
+)
+def test_result_of_other_settings_is_refused(stored, other):
+    assert kept(other, stored[1]) is None
+
+
+def test_result_of_another_version_is_refused(stored, monkeypatch):
+    run, folder = stored
+    monkeypatch.setattr(runs, "__version__", "0.0.0")
+    assert kept(run, folder) is None
+
+
+def test_file_that_is_no_result_is_run_over(tmp_path):
+    np.savez(tmp_path / "a.npz", values=np.arange(3))
+    assert kept(Run("a", squares, {"upto": 3}), tmp_path) is None
+
+
+TIP = 0.5 * FLAW.length * FLAW.direction
+
+
+def wing(angle: float) -> dict:
+    """Particles of one straight wing at `angle` [degrees] from the flaw's plane, from the bin above the tip upwards.
+
+    20 rows of particles in each bin, three abreast; the middle one has opened twice as far as those beside it.
+    """
+    bottom = BIN * math.ceil(TIP[1] / BIN)
+    height = bottom + BIN * (np.arange(20 * 25) + 0.5) / 20.0
+    start = np.array([TIP[0], bottom])
+    slope = 1.0 / math.tan(math.radians(45.0 + angle))
+    middle = start[0] + slope * (height - start[1])
+    x = np.concatenate([np.stack([middle + side, height], axis=1) for side in (0.0, -0.4e-3, 0.4e-3)])
+    gap = np.repeat([2e-6, 1e-6, 1e-6], len(height))
+    return {"x": x, "gap": gap, "start": start}
+
+
+def result_of(*wings) -> dict:
+    """What `grow` leaves of wings that look alike when young and when grown."""
+    out = {f"start_{k}": w["start"] for k, w in enumerate(wings)}
+    for age in ("young", "grown"):
+        out |= {f"{age}_{key}_{k}": w[key] for k, w in enumerate(wings) for key in ("x", "gap")}
+    return out
+
+
+@pytest.mark.parametrize("angles", [(80.0, 88.0), (70.0, 95.0), (60.0, 75.0)])
+def test_straight_wings_have_their_angle_and_their_path(angles):
+    wings = [wing(angle) for angle in angles]
+    for (found, path), angle, made in zip(read_wings(result_of(*wings)), angles, wings, strict=True):
+        assert found == pytest.approx(angle, abs=2.0)  # the half disc of the fit cuts rows of a wing askew
+        slope = 1.0 / math.tan(math.radians(45.0 + angle))
+        height = (np.arange(round(made["start"][1] / BIN), math.floor((TIP[1] + PATH) / BIN)) + 0.5) * BIN
+        expected = np.stack([made["start"][0] + slope * (height - made["start"][1]), height], axis=1)
+        # beyond 8 mm to a side particles are another crack's: bins that a wing leaves there are not compared
+        whole = np.abs(expected[:, 0] - TIP[0]) + 0.4e-3 + 0.5 * BIN * abs(slope) < 8e-3
+        assert whole.sum() > 5
+        np.testing.assert_allclose(path[: whole.sum()], expected[whole], rtol=0.0, atol=1e-12)
+
+
+def test_particles_below_the_start_or_far_aside_are_no_part_of_a_wing():
+    clean = wing(80.0)
+    below, aside = clean["start"] - [0.0, 0.5e-3], clean["start"] + [9e-3, 5e-3]
+    more = dict(clean, x=np.vstack([clean["x"], below, aside]), gap=np.append(clean["gap"], [1e-4, 1e-4]))
+    pairs = zip(read_wings(result_of(clean, clean)), read_wings(result_of(more, more)), strict=True)
+    for (angle, path), (same, again) in pairs:
+        assert angle == same
+        np.testing.assert_array_equal(path, again)
+
+
+def test_wing_that_never_began_has_no_angle_and_no_path():
+    (_, first), (angle, path) = read_wings(result_of(wing(80.0)))
+    assert len(first) > 10 and np.isnan(angle) and path.shape == (0, 2)
+
+
+@pytest.mark.parametrize("particles", [0, 1])
+def test_wing_of_hardly_a_particle_has_no_angle(particles):
+    stub = wing(80.0)
+    stub |= {"x": stub["x"][:particles], "gap": stub["gap"][:particles]}
+    for angle, path in read_wings(result_of(stub, stub)):
+        assert np.isnan(angle) and path.shape == (particles, 2)
+
+
+def straight(lateral: float, first: int = 0, last: int = 20) -> np.ndarray:
+    return np.stack([np.full(last - first, lateral), (np.arange(first, last) + 0.5) * BIN], axis=1)
+
+
+def test_spread_of_parallel_paths_is_their_distance():
+    assert spread([straight(1e-3), straight(2e-3)]) == pytest.approx((1e-3, 1e-3), rel=1e-12)
+    # three: 1, 2 and 3 mm apart
+    largest, rms = spread([straight(0.0), straight(1e-3), straight(3e-3)])
+    assert largest == pytest.approx(3e-3) and rms == pytest.approx(1e-3 * math.sqrt((1 + 4 + 9) / 3.0))
+
+
+def test_paths_are_compared_at_the_same_height_only():
+    assert np.isnan(spread([straight(0.0, 0, 5), straight(9e-3, 5, 9)])).all()
+    assert spread([straight(0.0, 0, 6), straight(9e-3, 5, 9)]) == pytest.approx((9e-3, 9e-3))
+    assert np.isnan(spread([straight(0.0)])).all() and np.isnan(spread([])).all()
+
+
+@pytest.mark.parametrize("name", sorted(STUDIES))
+@pytest.mark.parametrize("quick", [False, True])
+def test_runs_of_a_study_have_names_of_their_own_and_settings_that_are_data(name, quick):
+    plan = STUDIES[name].runs(quick)
+    assert len({run.tag for run in plan}) == len(plan) > 0
+    assert len({(run.work, runs.stamp(run)) for run in plan}) == len(plan)  # json of settings: plain data
+
+
+def test_list_names_every_study():
+    done = subprocess.run(
+        [sys.executable, "-m", "rsmpm_ti.study", "--list"],
+        cwd=Path(__file__).parent.parent, capture_output=True, text=True, timeout=120,
+    )  # fmt: skip
+    assert done.returncode == 0, done.stderr
+    assert [line.split()[0] for line in done.stdout.splitlines()] == list(STUDIES)
+
+
+@pytest.mark.parametrize(
+    "arguments, words",
+    [(["nonsense"], "unknown study nonsense"), ([], "name a study"), (["fracture_energy", "--jobs", "0"], "--jobs 0")],
+)
+def test_bad_command_is_refused_in_a_line_with_the_studies(arguments, words, capsys):
+    assert main(arguments) == 2
+    out, err = capsys.readouterr()
+    assert out == "" and err.count("\n") == 1 and words in err and "grid_independence" in err
