@@ -78,6 +78,7 @@ def test_critical_distance_gives_back_the_stress_it_was_fitted_to():
 
 def test_critical_distance_of_a_stress_never_reached_is_not_a_number():
     assert math.isnan(critical_distance(sif_cube(75.0), 7.5e-3, 1e4))
+    assert math.isnan(critical_distance(sif_cube(45.0), 7.5e-3, 0.1))  # T, 0.054, and the root's rest are more at a
     assert math.isnan(critical_distance(sif_cube(45.0), 7.5e-3, math.nan))
 
 
@@ -88,6 +89,16 @@ def test_interpolated_intensities_follow_those_of_an_infinite_plate():
         got = np.array(sif_cube(angle))
         infinite = np.array([-(math.cos(b) ** 2), math.sin(b) * math.cos(b), math.cos(2.0 * b)])
         assert np.all(np.abs(got - infinite) <= 0.1), angle
+
+
+def test_interpolated_intensities_are_mirrored_about_the_load_and_across_it():
+    """So the even ones move with the square of the angle there: at 2 degrees by 2 (1 - cos 4 degrees) = 0.005."""
+    for sif, scale in ((sif_cube, 1.0), (sif_disc, 4.0)):
+        for end, beside in ((0.0, 2.0), (90.0, 88.0)):
+            K_I, K_II, T = sif(beside)
+            assert K_I == pytest.approx(sif(end)[0], abs=0.005 * scale)
+            assert T == pytest.approx(sif(end)[2], abs=0.005 * scale)
+            assert sif(end)[1] == pytest.approx(0.0, abs=1e-12) and K_II > 0.0
 
 
 def test_ends_and_middle_of_a_hole_are_those_of_inglis():

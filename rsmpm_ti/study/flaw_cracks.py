@@ -33,6 +33,9 @@ GROWN = 5e-3
 NEAR = 6e-3
 """What cracks farther than this from the flaw's ends [m] is the platens' doing."""
 
+MIDDLE = 0.3
+"""A crack began in the middle of the flaw if its place along the flaw is less than this share of half its length."""
+
 LAST = 0.2
 """The load at onset is read from a line through this last share of the loading before it."""
 
@@ -90,7 +93,7 @@ def crack(*, specimen: str, angle: float, dx: float, paper: bool) -> dict:
         elif drive.sim.events.count[None]:
             events = read_events(drive.sim)
             x = near_flaw(slit, events.x[events.mode == TENSION].astype(float))[1]
-            if all(wing.length >= GROWN for wing in wings(begun, x, spacing)):
+            if all(wing.length >= GROWN for wing in wings(begun, x, spacing, 0.5 * slit.length)):
                 break
     time, stress, _ = loading_curve(history.table())
     return {
@@ -129,13 +132,20 @@ class WingStart:
     angle: float
 
 
-def wings(begun: np.ndarray, x: np.ndarray, spacing: float) -> tuple[WingStart, WingStart]:
+def place_along(begun: np.ndarray, half: float) -> float:
+    """Mean distance from the flaw's middle, along it, over half its length [m], of places begun [k, 2] [m]."""
+    return float(np.abs(begun[:, 0]).mean() / half)
+
+
+def wings(begun: np.ndarray, x: np.ndarray, spacing: float, half: float) -> tuple[WingStart, WingStart]:
     """The crack on the side of the flaw where it began, and that on the other, a half turn away.
 
-    A crack is what is connected to the first failure on its side. The flaw's plane is taken outwards, from its middle
-    to the end on that side.
+    A crack is what is connected to the first failure on its side: of a flaw cracked in its middle the sides are those
+    of its faces, else of its ends. The flaw's plane is taken outwards, from its middle to the end on that side. Lengths
+    in metres: places [k, 2] and [e, 2] as in `crack`, particle spacing, half the flaw's length.
     """
-    side = begun[0] / np.linalg.norm(begun[0])
+    across = place_along(begun, half) < MIDDLE
+    side = np.array([0.0, 1.0]) if across else begun[0] / np.linalg.norm(begun[0])
     return tuple(_wing(x[sign * (x @ side) > 0.0], sign * side, spacing) for sign in (1.0, -1.0))
 
 
@@ -182,6 +192,6 @@ def read_beginning(result: dict) -> Beginning:
     last = (time > (1.0 - LAST) * onset) & (time <= onset)
     stress = float(np.polyval(np.polyfit(time[last], result["stress"][last], 1), onset))
     first = float(first_directions(begun, result["normal"], half).mean())
-    pair = wings(begun, result["x"], float(result["spacing"]))
+    pair = wings(begun, result["x"], float(result["spacing"]), half)
     angles = [wing.angle for wing in pair if wing.length >= GROWN]
-    return Beginning(stress, float(np.abs(begun[:, 0]).mean() / half), first, float(np.mean(angles or [np.nan])))
+    return Beginning(stress, place_along(begun, half), first, float(np.mean(angles or [np.nan])))

@@ -133,9 +133,8 @@ def inglis(place: float, share: float, load: float) -> float:
 def mid_face_cube(angle: float, share: float) -> float:
     """Stress along the flaw in the middle of its face over s: Inglis, so of an infinite plate; 1 at 0 degrees.
 
-    share: width over length of the flaw. Inwards it stays: for a flat flaw across the load it is
-    s (1 - sin(t) + sin(t) cos(t)^2), tan(t) = depth/a, level at the face. So a mean over a length much shorter than a,
-    or a critical distance, leaves it as it is.
+    share: width over length of the flaw. No mean over a length is taken: inwards of a flat flaw across the load it is
+    s (1 - sin(t) + sin(t) cos(t)^2), tan(t) = depth/a, level at the face. Beside a slot it falls sooner.
     """
     return -inglis(90.0, share, 90.0 - angle)
 
