@@ -27,7 +27,7 @@ VERIFY_LAYERS = """
     triaxial cell material_point crack_forms crack_paths cracked_cell envelope disc hole slit_field first_failure
     weibull catalogue report running __main__
 """.split()
-STUDY_LAYERS = "runs turned grid_independence fracture_energy catalogue __main__".split()
+STUDY_LAYERS = "runs turned grid_independence fracture_energy gmts flaw_cracks flaw_angle catalogue __main__".split()
 BENCH_LAYERS = "settings yardstick speed measures front error __main__".split()
 """The same within the packages verify, study and bench, which see every layer above their own name."""
 
