@@ -21,7 +21,7 @@ def scene(
     arc: float = 90.0,  # half-angle of the loaded arc [degrees]; 90: every node in touch with the platen row
     dx: float = 0.5 * mm,
     seed: int = 1,
-    strain_end: float = 4.0e-4,
+    strain_end: float = 3.0e-4,
     time_scale: float = 16.0,
 ) -> Scene:
     radius, centre = 50.0 * mm, (50.0 * mm, 50.0 * mm)
