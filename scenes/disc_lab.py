@@ -6,7 +6,6 @@ from rsmpm_ti.boundaries import Platen
 from rsmpm_ti.regions import Difference, Disc, Slit
 from rsmpm_ti.rocks import lab_rock
 from rsmpm_ti.seeding import Jittered
-from rsmpm_ti.shape import Gimp
 from rsmpm_ti.spec import Body, Domain, Loading, Output, Ramp, Scene, Schedule
 from rsmpm_ti.units import MPa, mm, ms
 
@@ -41,6 +40,5 @@ def scene(
         rock=lab_rock(),
         loading=Loading(boundaries=platens, start=start, time_scale=time_scale, width=math.pi * radius),
         schedule=Schedule(strain_end=strain_end),
-        shape=Gimp(),  # wide B-splines reach past the curved contact and tear rock beside the platens
         output=Output(stress_limit=4.0 * MPa),
     )
