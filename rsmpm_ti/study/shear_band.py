@@ -17,7 +17,11 @@ STEP = 0.5
 """Angles are tried at this distance [degrees]."""
 
 COULOMB = 65.0
-"""45 + phi/2 [degrees] with phi = 40, from the plane on which the major principal stress acts: Coulomb (1776)."""
+"""45 + phi/2 [degrees] with phi = 40, from the plane on which the major principal stress acts: Coulomb (1776).
+
+For material that slips at constant volume, as this rock does, others have 45 (Roscoe 1970, Geotechnique 20:129) and
+45 + phi/4 = 55 degrees (Arthur et al. 1977, Geotechnique 27:53).
+"""
 
 
 @dataclass(frozen=True, kw_only=True)
