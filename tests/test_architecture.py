@@ -13,9 +13,9 @@ PACKAGE = ROOT / "rsmpm_ti"
 
 LAYERS = """
     errors units snapshot tensors regions seeding heterogeneity shape transfer averaging softening directional laws
-    confinement boundaries starts spec traversal state sorting crack_stress material node_update kernels smoothing
-    tracking margin measure stepper observe drive nominal crack_path cracks flaw_tips crack_growth aperture crack_bands
-    fragments emission summary output fracture record paint frames library run scene verify study bench
+    rocks confinement boundaries starts spec traversal state sorting crack_stress material node_update kernels
+    smoothing tracking margin measure stepper observe drive nominal crack_path cracks flaw_tips crack_growth aperture
+    crack_bands fragments emission summary output fracture record paint frames library run scene verify study bench
 """.split()
 """A module imports only from modules to the left of its own name."""
 
@@ -27,7 +27,9 @@ VERIFY_LAYERS = """
     triaxial cell material_point crack_forms crack_paths cracked_cell envelope disc hole slit_field first_failure
     weibull catalogue report running __main__
 """.split()
-STUDY_LAYERS = "runs turned grid_independence fracture_energy gmts flaw_cracks flaw_angle catalogue __main__".split()
+STUDY_LAYERS = """
+    runs turned grid_independence fracture_energy shear_band gmts flaw_cracks flaw_angle catalogue __main__
+""".split()
 BENCH_LAYERS = "settings yardstick speed measures front error __main__".split()
 """The same within the packages verify, study and bench, which see every layer above their own name."""
 

@@ -255,8 +255,9 @@ def test_rock_that_cannot_be_confined_is_refused():
 def test_confinement_delays_and_shortens_the_wings_of_a_flaw():
     """The flaw's edge must feel p more tension, so failure needs (sigma_t + p)/sigma_t = 2 times the added stress."""
     coarse = {"dx": 2e-3, "flaw_width": 6e-3, "time_scale": 16.0}
-    free = simulate(load_scene("confined", **coarse, confinement=0.0, strain_end=1.3e-4), threads=1)
-    held = simulate(load_scene("confined", **coarse, confinement=2e6, strain_end=4e-4), threads=1)
+    free = simulate(load_scene("cube", **coarse, strain_end=1.3e-4), threads=1)
+    settings = {"loading.confinement": "2e6"}
+    held = simulate(load_scene("cube", **coarse, strain_end=4e-4, settings=settings), threads=1)
     added = held.summary["first_failure_stress_Pa"] - 2e6
     # 5 % each: waves of a run with mass scaling decide when a particle at the limit goes
     assert added == pytest.approx(2.0 * free.summary["first_failure_stress_Pa"], rel=0.1)

@@ -237,7 +237,9 @@ def test_particle_fails_at_its_own_strength_and_no_other(taichi_f64):
 
 def test_specimen_first_fails_at_its_weakest_particle():
     """Stress is uniform until then: UCS of the rock times the smallest factor, at that particle's place."""
-    scene = load_scene("intact_weibull", dx=2.5 * MM, time_scale=40.0, strain_end=3.8e-4)
+    # the paper's rule, by which a particle fails when its own stress reaches its strength
+    settings = {"rock.averaging": "Local", "rock.after_failure": "CompressionOnly", "domain.dx": "0.0025"}
+    scene = load_scene("intact_weibull", dx=1.0 * MM, time_scale=40.0, strain_end=3.8e-4, settings=settings)
     # on a lattice: the scene's jitter makes stress noise of 2 %
     scene = replace(scene, shape=Linear(), bodies=(replace(scene.bodies[0], seeding=Lattice()),))
     x, k = scene.particles()[0].x, strengths_by_seed(scene)

@@ -1,0 +1,55 @@
+"""Two parallel flaws in rock of the laboratory: wing cracks, then cracks that join the flaws across their bridge.
+
+Arranged as in Bobet & Einstein (1998), Int. J. Rock Mech. Min. Sci. 35:863: the ligament is the line between the inner
+tips; the bridging angle is that from the line of the lower flaw to the ligament, counter-clockwise. 0: one flaw in the
+line of the other; 90: the inner tips face each other; more: the flaws overlap; below 0: stepped to the other side.
+"""
+
+import math
+
+from rsmpm_ti.boundaries import Platen
+from rsmpm_ti.regions import Box, Difference, Slit
+from rsmpm_ti.rocks import lab_rock
+from rsmpm_ti.seeding import Jittered
+from rsmpm_ti.spec import Affine, Body, Domain, Loading, Output, Scene, Schedule
+from rsmpm_ti.units import MPa, mm
+
+QUICK = {"dx": 1.0 * mm}
+
+
+def scene(
+    *,
+    flaw_angle: float = 45.0,
+    bridging_angle: float = 90.0,
+    ligament: float = 12.0 * mm,
+    flaw_length: float = 12.0 * mm,
+    flaw_width: float = 3.0 * mm,
+    dx: float = 0.5 * mm,
+    seed: int = 1,
+    strain_end: float = 9.0e-4,
+    time_scale: float = 16.0,
+) -> Scene:
+    along, across = math.radians(flaw_angle), math.radians(flaw_angle + bridging_angle)
+    # from the specimen's centre to the centre of the upper flaw: half the ligament, then half the flaw
+    offset = [0.5 * (ligament * turn(across) + flaw_length * turn(along)) for turn in (math.cos, math.sin)]
+    flaws = tuple(
+        Slit(
+            centre=(25.0 * mm + side * offset[0], 50.0 * mm + side * offset[1]),
+            length=flaw_length, width=flaw_width, angle=flaw_angle, rounded=True,
+        )
+        for side in (-1.0, 1.0)
+    )  # fmt: skip
+    block = Box(lower=(0.0, 0.0), upper=(50.0 * mm, 100.0 * mm))
+    platens = (
+        Platen(axis=1, side="lower", position=0.0, speed=2.5e-3),
+        Platen(axis=1, side="upper", position=100.0 * mm, speed=-2.5e-3),
+    )
+    return Scene(
+        title="Uniaxial compression of a specimen with two flaws",
+        domain=Domain(lower=(-10.0 * mm, 0.0), upper=(60.0 * mm, 100.0 * mm), dx=dx),
+        bodies=(Body(region=Difference(whole=block, removed=flaws), seeding=Jittered(seed=seed, fitted=True)),),
+        rock=lab_rock(),
+        loading=Loading(boundaries=platens, start=Affine(), time_scale=time_scale, width=50.0 * mm),
+        schedule=Schedule(strain_end=strain_end),
+        output=Output(stress_limit=4.0 * MPa),
+    )
