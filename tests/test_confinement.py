@@ -177,7 +177,7 @@ def test_confinement_brings_no_field():
         assert one == other
 
 
-@pytest.mark.parametrize("run", ["held", "held_3d"])
+@pytest.mark.parametrize("run", ["held", pytest.param("held_3d", marks=pytest.mark.validation)])
 def test_energy_balances_with_the_work_of_the_pressure(run, request):
     pressed = request.getfixturevalue(run)
     assert pressed.summary["energy_balance_error"] < 0.01
@@ -188,6 +188,7 @@ def test_energy_balances_with_the_work_of_the_pressure(run, request):
     assert rows["work_J"][-1] > 1.4 * platens
 
 
+@pytest.mark.validation
 def test_specimen_in_3d_follows_hooke_from_its_confined_state(held_3d):
     """Uniaxial: d_sigma = E d_eps along the axis, of logarithmic strain by Hooke's law in rates; none across it."""
     axial = E * math.log(1.0 - held_3d.rows["axial_strain"][-1])
@@ -252,6 +253,7 @@ def test_rock_that_cannot_be_confined_is_refused():
     assert scene(region, Loading(confinement=0.099 * BULK)).loading.confinement > 0.0
 
 
+@pytest.mark.validation
 def test_confinement_delays_and_shortens_the_wings_of_a_flaw():
     """The flaw's edge must feel p more tension, so failure needs (sigma_t + p)/sigma_t = 2 times the added stress."""
     coarse = {"dx": 2e-3, "flaw_width": 6e-3, "time_scale": 16.0}

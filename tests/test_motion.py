@@ -93,6 +93,7 @@ def test_mass_scaling_leaves_the_weight_of_a_body_unchanged():
     assert fall[1] == pytest.approx(fall[0], rel=1e-9, abs=1e-18)
 
 
+@pytest.mark.validation
 def test_a_stressed_disc_that_spins_ten_turns_fails_nowhere_at_80_percent_of_its_strength():
     """Centrifugal stress at the centre of a plane-strain disc: rho w^2 R^2 (3 - 2 nu)/(8 (1 - nu)) (Timoshenko &
     Goodier, art. 32 with plane-strain constants); a sudden start overshoots to at most twice that."""
