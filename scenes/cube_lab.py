@@ -25,7 +25,7 @@ def scene(
     length: float = 1.0 * mm,
     dx: float = 0.5 * mm,
     seed: int = 1,
-    strain_end: float = 1.0e-3,
+    strain_end: float = 8.0e-4,
     time_scale: float = 16.0,
 ) -> Scene:
     rock = lab_rock(G_f_I=G_f_I, G_f_II=G_f_II, residual_friction_angle=residual_friction_angle, length=length)
@@ -37,7 +37,7 @@ def scene(
     )
     return Scene(
         title="Uniaxial compression of a flawed specimen: directional cracks and fracture energy",
-        domain=Domain(lower=(-5.0 * mm, 0.0), upper=(55.0 * mm, 100.0 * mm), dx=dx),
+        domain=Domain(lower=(-15.0 * mm, 0.0), upper=(65.0 * mm, 100.0 * mm), dx=dx),
         bodies=(Body(region=Difference(whole=block, removed=(flaw,)), seeding=Jittered(seed=seed, fitted=True)),),
         rock=rock,
         loading=Loading(boundaries=platens, start=Affine(), time_scale=time_scale, width=50.0 * mm),
