@@ -116,7 +116,7 @@ def finish(results: dict) -> Outcome:
             figure.subplots(1, 2, sharey=True), (("lab", "cube_lab"), ("paper", "paper's rule, lattice")), strict=True
         ):
             colours = {angle: f"C{k}" for k, angle in enumerate(ANGLES)}
-            styles = {"1": ":", "0.5": "-", "0.25": "--"}
+            styles = {"1": ":", "0.5": "-"}
             for tag, _, path in families[family]:
                 _, dx, angle, *_ = tag.split("_")
                 axes.plot(*(1e3 * path.T), styles[dx], color=colours[float(angle)], linewidth=1.0)
