@@ -7,8 +7,9 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from matplotlib.figure import Figure
 
-from rsmpm_ti.study import runs
+from rsmpm_ti.study import fracture_energy, runs
 from rsmpm_ti.study.__main__ import main
 from rsmpm_ti.study.catalogue import STUDIES
 from rsmpm_ti.study.grid_independence import BIN, FLAW, PATH, read_wings, spread
@@ -183,3 +184,19 @@ def test_bad_command_is_refused_in_a_line_with_the_studies(arguments, words, cap
     assert main(arguments) == 2
     out, err = capsys.readouterr()
     assert out == "" and err.count("\n") == 1 and words in err and "grid_independence" in err
+
+
+def test_fracture_energy_reads_peaks_and_energies():
+    """A strip of 2 MPa on the ligament, and one of the paper's whose peak falls as the root of dx."""
+
+    def pulled(peak: float) -> dict:
+        return {"strain": np.linspace(0.0, 1e-4, 3), "stress": np.array([0.0, 0.5 * peak, 0.0]), "dissipated": None}
+
+    results = {f"lab_{dx:g}": pulled(2e6) for dx in (1.0, 0.5)}
+    results |= {f"paper_{dx:g}": pulled(2e6 * dx**0.43) for dx in (1.0, 0.5)}
+    seam = {"stress": np.zeros(1), "strain": np.zeros(1), "dissipated": np.array([0.0, 5.1 * 10e-3]), "energy": 5.0}
+    outcome = fracture_energy.finish(results | {"lattice_1": seam, "jittered_1": seam})
+    outcome.draw(Figure())
+    assert all(row.passed for row in outcome.rows) and len(outcome.rows) == 4
+    assert [row.got for row in outcome.rows[:2]] == pytest.approx([5.1, 5.1])
+    assert outcome.rows[-1].got == pytest.approx(0.43)

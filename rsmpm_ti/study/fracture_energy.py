@@ -103,12 +103,10 @@ def finish(results: dict) -> Outcome:
     rows, peaks = [], {"lab": {}, "paper": {}}
     for tag, result in results.items():
         law, dx = tag.split("_")
-        if law == "seam":
-            got = result["dissipated"][-1] / SEAM_WIDTH
-            row = relative(
-                f"energy per crack area at dx {dx} mm [J/m2]", float(result["energy"]), got, 0.05, "asked for"
-            )
-            rows.append(row)
+        if law not in peaks:
+            got, name = result["dissipated"][-1] / SEAM_WIDTH, f"energy per crack area, {law}, dx {dx} mm [J/m2]"
+            why = "what was asked for; a crack that steps between rows of cells costs more than a straight one"
+            rows.append(relative(name, float(result["energy"]), got, 0.05, why))
         else:
             peaks[law][float(dx)] = result["stress"].max() * WIDTH / LIGAMENT
     lab, paper = (np.array(list(peaks[law].values())) for law in ("lab", "paper"))
