@@ -1,4 +1,4 @@
-"""Which stress decides on tensile failure: a particle's own, or its mean over a length of the rock."""
+"""Which stress decides on tensile failure, and which opening on loss of strength: a particle's own, or the rock's."""
 
 import math
 from dataclasses import dataclass
@@ -10,7 +10,7 @@ from rsmpm_ti.errors import refuse
 
 @dataclass(frozen=True, kw_only=True)
 class Local:
-    """Each particle's own stress decides, as in the paper: what fails first then depends on cell size and edges."""
+    """Each particle's own stress and opening decide: what fails first then depends on cell size and edges."""
 
     acts = False
 
@@ -26,6 +26,12 @@ class Nonlocal:
     wedge of `wedge` degrees about its line and nearer than `shade` lengths, is judged by its own stress, which the
     crack relieves. Local tracking with an exclusion radius, Cervera & Chiumenti (2006), Comput. Methods Appl. Mech.
     Eng. 196:304, sec. 4.
+
+    A cracked particle loses tensile strength by the opening of the crack that it is part of, read from the mean crack
+    strain over the same length, not by its own share of it: then a crack costs G_f per area however many rows of
+    particles it runs through. Bazant & Lin (1988), J. Struct. Eng. 114:2493. So `length` must be short against the zone
+    in which strength is lost, about E G_f/sigma_t^2; where it is not, a crack's tip is robbed of strength by the crack
+    behind it.
     """
 
     length: float
@@ -61,6 +67,14 @@ class Nonlocal:
         reach = math.ceil(3.5 * math.sqrt(spare))
         weight = np.exp(-0.5 * np.arange(-reach, reach + 1) ** 2 / spare)
         return tuple((weight / weight.sum()).tolist())
+
+    def band_share(self, width: float) -> float:
+        """What averaging leaves, in its middle, of a strain that is 1 in a band `width` [m] wide and 0 beside it."""
+        return math.erf(width / (2.0 * math.sqrt(2.0) * self.length))
+
+    def band_variance(self, width: float) -> float:
+        """Variance of such a band after averaging [m^2]."""
+        return self.length**2 + width**2 / 12.0
 
     def least_length(self, dx: float, variance: float) -> float:
         """The shortest length that this grid can average over [m]."""

@@ -35,6 +35,15 @@ def load_factors(sim: ti.template(), p, extremes):
 
 
 @ti.func
+def softening_strain(sim: ti.template(), p):
+    """Crack strain by which a particle's crack has lost tensile strength: its own, or that of the rock around."""
+    strain = sim.particles.widest[p][0]
+    if ti.static(sim.averaging):
+        strain = sim.particles.worn[p]
+    return strain
+
+
+@ti.func
 def strength_left(sim: ti.template(), p):
     """What is left of the tensile strength across the crack and across the one at right angles, and of cohesion [Pa].
 
@@ -42,7 +51,7 @@ def strength_left(sim: ti.template(), p):
     """
     particles, soft = sim.particles, sim.rock.after_failure.softening
     full, widest = strengths(sim, p), particles.widest[p]
-    n = soft.share(widest[0], full[0], soft.G_f_I, sim.band)
+    n = soft.share(softening_strain(sim, p), full[0], soft.G_f_I, sim.band)
     t = soft.share(widest[1], full[0], soft.G_f_I, sim.band)
     shear = soft.share(particles.slip[p], full[1], soft.G_f_II, sim.band)
     if particles.mode[p] == 2:
@@ -51,10 +60,14 @@ def strength_left(sim: ti.template(), p):
 
 
 @ti.func
-def strength_share(sim: ti.template(), p, mode):
-    """Share of strength that a particle cracked by `mode` (1 tension, 2 shear) has left."""
-    left, full = strength_left(sim, p), strengths(sim, p)
-    return ti.select(mode == 1, left[0] / full[0], left[2] / full[1])
+def has_failed(sim: ti.template(), p, mode):
+    """Whether a particle cracked by `mode` (1 tension, 2 shear) has itself opened or slipped by what costs half of the
+    strength: what is only torn along by a crack beside it has lost its strength, but is no crack."""
+    soft, full = sim.rock.after_failure.softening, strengths(sim, p)
+    share = soft.share(sim.particles.slip[p], full[1], soft.G_f_II, sim.band)
+    if mode == 1:
+        share = ti.min(share, soft.share(sim.particles.widest[p][0], full[0], soft.G_f_I, sim.band))
+    return share < 0.5
 
 
 @ti.func
@@ -66,6 +79,8 @@ def start_crack(sim: ti.template(), p, mode, angle, time):
     particles.crack_angle[p] = angle
     if mode == 1:
         particles.widest[p] = ti.Vector([FRESH, 0.0])
+        if ti.static(sim.averaging):
+            particles.worn[p] = FRESH
     else:
         particles.slip[p] = ti.max(particles.slip[p], FRESH)
 
@@ -180,6 +195,8 @@ def release(sim: ti.template(), p, G, time):
     particles, elasticity = sim.particles, sim.rock.elasticity
     trial = particles.sigma[p]
     before = elasticity.energy(trial) + spring_energy(sim, p)
+    if ti.static(sim.averaging):
+        particles.worn[p] = ti.max(particles.worn[p], particles.mean_opening[p])
     left = strength_left(sim, p)
     particles.crack_angle[p] = particles.crack_angle[p] + rotation_angle(G)
     s = open_cracks(sim, p, turned(trial, particles.crack_angle[p]), left)

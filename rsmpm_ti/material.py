@@ -2,7 +2,7 @@
 
 import taichi as ti
 
-from rsmpm_ti.crack_stress import load_factors, release, start_crack, strength_share
+from rsmpm_ti.crack_stress import has_failed, load_factors, release, start_crack
 from rsmpm_ti.laws import pressure_energy
 from rsmpm_ti.state import NO_SHADE
 from rsmpm_ti.tensors import extreme_principals, isotropic, principal_angle
@@ -63,7 +63,8 @@ def failure_by_own_stress(sim: ti.template(), p, extremes):
 def check_and_release(sim: ti.template(), p, dt, time, slot):
     """The failure check for rock that cracks with a direction, and the stress of what has cracked.
 
-    The event is when half of the strength is lost: at once without fracture energy.
+    The event is when a particle has opened or slipped by what costs half of the strength: at once without fracture
+    energy.
     """
     particles = sim.particles
     extremes = extreme_principals(particles.sigma[p])
@@ -80,7 +81,7 @@ def check_and_release(sim: ti.template(), p, dt, time, slot):
         particles.lost[p] = particles.lost[p] + lost
         sim.ledger.released[slot] += ti.cast(lost, ti.f64)
         mode = particles.mode[p]
-        if mode != particles.failed[p] and strength_share(sim, p, mode) < 0.5:
+        if mode != particles.failed[p] and has_failed(sim, p, mode):
             particles.failed[p] = mode
             record_failure(sim, p, mode, extremes, particles.lost[p], time)
 

@@ -1,15 +1,18 @@
-"""Mean stress over a length of the rock: spread to nodes, blurred along each axis, read back. 2D."""
+"""Mean stress and mean crack strain over a length of the rock: spread to nodes, blurred along each axis, read back.
+
+2D.
+"""
 
 import taichi as ti
 
 from rsmpm_ti.kernels import coordinates, weights_at
-from rsmpm_ti.shape import tensor_weight
+from rsmpm_ti.shape import tensor_gradient, tensor_weight
 from rsmpm_ti.tensors import extreme_principals
 
 
 @ti.kernel
 def clear_means(sim: ti.template()):
-    zero = ti.Vector.zero(float, 5)
+    zero = ti.Vector.zero(float, 6)
     for i in ti.grouped(sim.means.sums):
         sim.means.sums[i] = zero
         sim.means.peak[i] = 0.0
@@ -19,7 +22,7 @@ def clear_means(sim: ti.template()):
 
 @ti.kernel
 def spread_stress(sim: ti.template(), colour: int):
-    """sum w_ip V_p sigma_p and sum w_ip V_p to nodes."""
+    """sum w_ip V_p sigma_p, sum w_ip V_p and sum w_ip V_p e_p to nodes; e: largest opening strain across the crack."""
     particles = sim.particles
     for t in range(sim.traversal.items):
         start, stop = sim.traversal.span_of_colour(t, colour)
@@ -28,7 +31,7 @@ def spread_stress(sim: ti.template(), colour: int):
             base = sim.grid.base(xi, sim.shape)
             w, _ = weights_at(sim, xi, base)
             sigma, V_p = particles.sigma[p], particles.volume[p] * particles.J[p]
-            carried = V_p * ti.Vector([sigma[0], sigma[1], sigma[2], sigma[3], 1.0])
+            carried = V_p * ti.Vector([sigma[0], sigma[1], sigma[2], sigma[3], 1.0, particles.widest[p][0]])
             for offset in ti.static(sim.stencil):
                 i = base + ti.Vector(offset)
                 sim.traversal.add(sim.means.sums, i, tensor_weight(w, offset) * carried)
@@ -39,7 +42,7 @@ def blur(sim: ti.template(), source: ti.template(), target: ti.template(), axis:
     """Convolution of node sums with the taps along one axis."""
     reach = ti.static(sim.means.reach)
     for i in ti.grouped(source):
-        total = ti.Vector.zero(float, 5)
+        total = ti.Vector.zero(float, 6)
         for k in range(-reach, reach + 1):
             j = i + k * ti.Vector.unit(2, axis)
             if j[axis] >= 0 and j[axis] < sim.grid.nodes[axis]:
@@ -48,15 +51,44 @@ def blur(sim: ti.template(), source: ti.template(), target: ti.template(), axis:
 
 
 @ti.func
-def mean_stress(sim: ti.template(), p):
-    """Packed mean stress at a particle."""
+def means_at(sim: ti.template(), p):
+    """Packed mean stress, and mean crack strain, at a particle."""
     xi = coordinates(sim, p)
     base = sim.grid.base(xi, sim.shape)
     w, _ = weights_at(sim, xi, base)
-    total = ti.Vector.zero(float, 5)
+    total = ti.Vector.zero(float, 6)
     for offset in ti.static(sim.stencil):
         total += tensor_weight(w, offset) * sim.means.sums[base + ti.Vector(offset)]
-    return ti.Vector([total[0], total[1], total[2], total[3]]) / total[4]
+    return ti.Vector([total[0], total[1], total[2], total[3]]) / total[4], total[5] / total[4]
+
+
+@ti.kernel
+def read_openings(sim: ti.template()):
+    """Crack strain of each cracked particle if its band had the opening of the rock around: Bazant & Lin (1988).
+
+    J. Struct. Eng. 114:2493. What averaging makes of a band is highest in its middle and falls off as a Gaussian; the
+    slope across the crack tells how far the middle is, so that all rows of a band lose strength together.
+    """
+    particles, means = sim.particles, sim.means
+    for p in particles.mode:
+        if particles.mode[p] != 0:
+            xi = coordinates(sim, p)
+            base = sim.grid.base(xi, sim.shape)
+            w, dw = weights_at(sim, xi, base)
+            volume, strain, gradient = 0.0, 0.0, ti.Vector.zero(float, 2)
+            for offset in ti.static(sim.stencil):
+                total = means.sums[base + ti.Vector(offset)]
+                volume += tensor_weight(w, offset) * total[4]
+                strain += tensor_weight(w, offset) * total[5]
+            for offset in ti.static(sim.stencil):
+                total = means.sums[base + ti.Vector(offset)]
+                slope = tensor_gradient(w, dw, offset, sim.grid.inv_dx)
+                gradient += (total[5] - strain / volume * total[4]) * slope
+            n = ti.Vector([ti.cos(particles.crack_angle[p]), ti.sin(particles.crack_angle[p])])
+            away = ti.abs(gradient.dot(n)) * means.variance / ti.max(strain, 1e-30)
+            away = ti.min(away, 0.5 * sim.band)
+            peak = ti.exp(0.5 * away * away / means.variance)
+            particles.mean_opening[p] = peak * strain / volume / means.band_share
 
 
 @ti.kernel
@@ -86,7 +118,7 @@ def near_hot(sim: ti.template(), p):
 
 
 def smooth_stress(sim) -> None:
-    """Fill sim.means.sums for `mean_stress`."""
+    """Fill sim.means.sums for `means_at`."""
     clear_means(sim)
     for colour in range(sim.traversal.colours):
         spread_stress(sim, colour)

@@ -140,7 +140,9 @@ class Particles:
         if self.breaks and scene.rock.averaging.acts:
             # overload is of one step only; shade_angle: normal of the crack beside [rad]
             self.overload, self.shade_angle = ti.field(real, count), ti.field(real, count)
-            real_fields.append(self.shade_angle)
+            # crack strain of the rock around, by which tensile strength is lost: as last averaged, and the largest
+            self.mean_opening, self.worn = ti.field(real, count), ti.field(real, count)
+            real_fields += [self.shade_angle, self.mean_opening, self.worn]
         self.real_components = tuple(c for field in real_fields for c in _components(field))
         self.whole_components = tuple(whole_fields)
         self.key, self.order = ti.field(ti.i32, count), ti.field(ti.i32, count)
@@ -174,17 +176,23 @@ class Events:
 
 @ti.data_oriented
 class Means:
-    """Node fields of averaged stress: sums of V sigma and V, a second copy for blurring, and the largest overload."""
+    """Node fields of averages: sums of V sigma, V and V x crack strain, a second copy for blurring, and the largest
+    overload."""
 
     def __init__(self, scene: Scene, grid: Grid, real):
         taps = scene.rock.averaging.taps(scene.domain.dx, scene.shape.variance)
         self.reach, self.taps = len(taps) // 2, ti.field(real, len(taps))
         self.taps.from_numpy(np.array(taps))
-        self.sums, self.other = (ti.Vector.field(5, real, grid.nodes) for _ in range(2))
+        self.sums, self.other = (ti.Vector.field(6, real, grid.nodes) for _ in range(2))
         self.peak, self.hot, self.any_hot = (
             ti.field(real, grid.nodes),
             ti.field(ti.i32, grid.nodes),
             ti.field(ti.i32, ()),
+        )
+        band = scene.shape.crack_band * scene.domain.dx
+        self.band_share, self.variance = (
+            scene.rock.averaging.band_share(band),
+            scene.rock.averaging.band_variance(band),
         )
         # smallest tensile strength of a particle [Pa], and steps between two looks: the mean over a length cannot
         # change within a quarter of the time that a wave needs for it

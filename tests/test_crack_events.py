@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 import taichi as ti
 
-from rsmpm_ti.averaging import Local
-from rsmpm_ti.directional import Directional
+from rsmpm_ti.averaging import Local, Nonlocal
+from rsmpm_ti.directional import FRESH, Directional
 from rsmpm_ti.errors import UnstableRun
 from rsmpm_ti.laws import CompressionOnly, Hooke, MohrCoulomb, NoViscosity, Rock
 from rsmpm_ti.material import check_and_release, update_stress
@@ -29,7 +29,7 @@ STEP = 1e-6
 """Strain of the slowest particle in a step: 0.9 % of what the rock bears."""
 
 
-def cell(after_failure) -> Simulation:
+def cell(after_failure, averaging=Local()) -> Simulation:  # noqa: B008
     """Four particles in one cell; the band of a crack is one cell with linear functions."""
     scene = Scene(
         title="cell",
@@ -41,7 +41,7 @@ def cell(after_failure) -> Simulation:
             criterion=MohrCoulomb(cohesion=5.95e6, friction_angle=40.0, tensile_strength=TENSILE),
             viscosity=NoViscosity(),
             after_failure=after_failure,
-            averaging=Local(),
+            averaging=averaging,
         ),
         loading=Loading(),
         schedule=Schedule(t_end=1e-6),
@@ -101,6 +101,31 @@ def test_ledger_is_the_sum_of_what_particles_have_lost(softening):
         assert lost == pytest.approx(G_F / DX * (0.5 * DX) ** 2, rel=0.02)
     else:  # what was stored: f^2/(2 M), or of the step that exceeds it
         assert lost == pytest.approx(0.5 * TENSILE**2 / M * (0.5 * DX) ** 2, rel=2.5 * RATES.max() * M / TENSILE)
+
+
+def test_strength_is_lost_by_the_mean_opening_and_a_particle_fails_by_its_own():
+    """The particle's own opening costs f w at full strength; half of that would be given back on closing."""
+    sim = cell(Directional(softening=LinearSoftening(G_f_I=G_F, G_f_II=100.0)), Nonlocal(length=DX))
+    particles, half = sim.particles, G_F / TENSILE / DX  # the strain at which half of the strength is lost
+    particles.mode.fill(1)
+    particles.crack_angle.fill(0.5 * math.pi)
+    particles.widest.fill(FRESH)
+    particles.worn.fill(FRESH)
+    pull(sim, 3000, STEP)
+    assert particles.sigma.to_numpy()[:, 1] == pytest.approx(np.full(4, TENSILE), rel=1e-6)
+    assert sim.events.count[None] == 0
+    pull(sim, 3000, STEP)
+    opening = particles.opening.to_numpy()[:, 0]
+    assert (opening > half).all() and sim.events.count[None] == 4  # of its own, though nothing is lost yet
+    volume = particles.volume.to_numpy() * particles.J.to_numpy()
+    assert particles.lost.to_numpy() == pytest.approx(0.5 * TENSILE * opening * volume, rel=0.01)
+    for mean, left in ((half, 0.5), (0.5 * half, 0.5), (3.0 * half, 0.0)):  # what is lost does not come back
+        particles.mean_opening.fill(mean)
+        pull(sim, 2, STEP)
+        assert particles.sigma.to_numpy()[:, 1] == pytest.approx(np.full(4, left * TENSILE), abs=1.0)
+    # what had been left to give back, half of f w, is lost with the strength
+    assert particles.lost.to_numpy() == pytest.approx(TENSILE * opening * volume, rel=0.01)
+    assert sim.ledger.released.to_numpy().sum() == pytest.approx(particles.lost.to_numpy().sum(), rel=1e-12)
 
 
 @pytest.mark.parametrize("mode", [1, 2])

@@ -12,7 +12,7 @@ from matplotlib.figure import Figure
 from rsmpm_ti.study import fracture_energy, runs
 from rsmpm_ti.study.__main__ import main
 from rsmpm_ti.study.catalogue import STUDIES
-from rsmpm_ti.study.grid_independence import BIN, FLAW, PATH, read_wings, spread
+from rsmpm_ti.study.grid_independence import BIN, FLAW, PATH, read_wing, spread
 from rsmpm_ti.study.runs import Run, kept, run_all
 
 
@@ -82,64 +82,55 @@ def test_file_that_is_no_result_is_run_over(tmp_path):
 TIP = 0.5 * FLAW.length * FLAW.direction
 
 
-def wing(angle: float) -> dict:
-    """Particles of one straight wing at `angle` [degrees] from the flaw's plane, from the bin above the tip upwards.
+DX = 0.5e-3
+AHEAD = round(4.0 * BIN / DX)
+"""How many of a bin's failures make its place."""
 
-    20 rows of particles in each bin, three abreast; the middle one has opened twice as far as those beside it.
+
+def wing(angle: float) -> np.ndarray:
+    """What failed in one straight wing at `angle` [degrees] from the flaw's plane, from the bin above the tip upwards.
+
+    In each bin first as many as make its place, along the line, then as many beside it.
     """
     bottom = BIN * math.ceil(TIP[1] / BIN)
-    height = bottom + BIN * (np.arange(20 * 25) + 0.5) / 20.0
-    start = np.array([TIP[0], bottom])
+    height = bottom + BIN * (np.arange(AHEAD * 25) + 0.5) / AHEAD
+    middle = TIP[0] + (height - bottom) / math.tan(math.radians(45.0 + angle))
+    line = np.stack([middle, height], axis=1)
+    return np.concatenate([line, line + [0.7e-3, 0.0]])
+
+
+@pytest.mark.parametrize("angle", [60.0, 70.0, 80.0, 95.0])
+def test_straight_wing_has_its_angle_and_its_path(angle):
+    made = wing(angle)
+    found = read_wing({"first_0": np.array([70.0, 80.0]), "failed_0": made}, "0", DX)
+    assert found.first == 75.0
+    assert found.left == pytest.approx(angle, abs=0.01)
     slope = 1.0 / math.tan(math.radians(45.0 + angle))
-    middle = start[0] + slope * (height - start[1])
-    x = np.concatenate([np.stack([middle + side, height], axis=1) for side in (0.0, -0.4e-3, 0.4e-3)])
-    gap = np.repeat([2e-6, 1e-6, 1e-6], len(height))
-    return {"x": x, "gap": gap, "start": start}
+    height = (np.arange(round(made[0, 1] / BIN - 0.5), math.floor((TIP[1] + PATH) / BIN)) + 0.5) * BIN
+    expected = np.stack([TIP[0] + slope * (height - made[0, 1] + 0.5 * BIN / AHEAD), height], axis=1)
+    # beyond 8 mm to a side failures are another crack's: bins that a wing leaves there are not compared
+    whole = np.abs(expected[:, 0] - TIP[0]) + 0.7e-3 + 0.5 * BIN * abs(slope) < 8e-3
+    assert whole.sum() > 5
+    np.testing.assert_allclose(found.path[: whole.sum()], expected[whole], rtol=0.0, atol=1e-12)
 
 
-def result_of(*wings) -> dict:
-    """What `grow` leaves of wings that look alike when young and when grown."""
-    out = {f"start_{k}": w["start"] for k, w in enumerate(wings)}
-    for age in ("young", "grown"):
-        out |= {f"{age}_{key}_{k}": w[key] for k, w in enumerate(wings) for key in ("x", "gap")}
-    return out
-
-
-@pytest.mark.parametrize("angles", [(80.0, 88.0), (70.0, 95.0), (60.0, 75.0)])
-def test_straight_wings_have_their_angle_and_their_path(angles):
-    wings = [wing(angle) for angle in angles]
-    for (found, path), angle, made in zip(read_wings(result_of(*wings)), angles, wings, strict=True):
-        assert found == pytest.approx(angle, abs=2.0)  # the half disc of the fit cuts rows of a wing askew
-        slope = 1.0 / math.tan(math.radians(45.0 + angle))
-        height = (np.arange(round(made["start"][1] / BIN), math.floor((TIP[1] + PATH) / BIN)) + 0.5) * BIN
-        expected = np.stack([made["start"][0] + slope * (height - made["start"][1]), height], axis=1)
-        # beyond 8 mm to a side particles are another crack's: bins that a wing leaves there are not compared
-        whole = np.abs(expected[:, 0] - TIP[0]) + 0.4e-3 + 0.5 * BIN * abs(slope) < 8e-3
-        assert whole.sum() > 5
-        np.testing.assert_allclose(path[: whole.sum()], expected[whole], rtol=0.0, atol=1e-12)
-
-
-def test_particles_below_the_start_or_far_aside_are_no_part_of_a_wing():
+def test_what_fails_late_below_or_far_aside_does_not_move_a_path():
     clean = wing(80.0)
-    below, aside = clean["start"] - [0.0, 0.5e-3], clean["start"] + [9e-3, 5e-3]
-    more = dict(clean, x=np.vstack([clean["x"], below, aside]), gap=np.append(clean["gap"], [1e-4, 1e-4]))
-    pairs = zip(read_wings(result_of(clean, clean)), read_wings(result_of(more, more)), strict=True)
-    for (angle, path), (same, again) in pairs:
-        assert angle == same
-        np.testing.assert_array_equal(path, again)
+    late = clean[-AHEAD:] + [2e-3, 0.0]
+    more = np.vstack([clean, clean[0] - [0.0, 2.5e-3], clean[0] + [9e-3, 5e-3], late])
+    one, other = (read_wing({"failed_1": x}, "1", DX) for x in (clean, more))
+    np.testing.assert_array_equal(one.path, other.path)
+    assert one.left == other.left and np.isnan(one.first)
 
 
-def test_wing_that_never_began_has_no_angle_and_no_path():
-    (_, first), (angle, path) = read_wings(result_of(wing(80.0)))
-    assert len(first) > 10 and np.isnan(angle) and path.shape == (0, 2)
+def test_wing_that_never_failed_has_no_direction_and_no_path():
+    found = read_wing({"failed_0": np.zeros((0, 2)), "first_0": np.array([75.0])}, "0", DX)
+    assert found.first == 75.0 and np.isnan(found.left) and found.path.shape == (0, 2)
 
 
-@pytest.mark.parametrize("particles", [0, 1])
-def test_wing_of_hardly_a_particle_has_no_angle(particles):
-    stub = wing(80.0)
-    stub |= {"x": stub["x"][:particles], "gap": stub["gap"][:particles]}
-    for angle, path in read_wings(result_of(stub, stub)):
-        assert np.isnan(angle) and path.shape == (particles, 2)
+def test_wing_of_one_failure_has_no_direction():
+    found = read_wing({"failed_0": wing(80.0)[:1]}, "0", DX)
+    assert np.isnan(found.left) and found.path.shape == (1, 2)
 
 
 def straight(lateral: float, first: int = 0, last: int = 20) -> np.ndarray:
@@ -200,3 +191,10 @@ def test_fracture_energy_reads_peaks_and_energies():
     assert all(row.passed for row in outcome.rows) and len(outcome.rows) == 4
     assert [row.got for row in outcome.rows[:2]] == pytest.approx([5.1, 5.1])
     assert outcome.rows[-1].got == pytest.approx(0.43)
+
+
+def test_peak_is_of_the_load_before_the_break_not_of_the_waves_after():
+    rise = np.array([0.0, 0.3, 0.28, 0.9, 0.95, 0.93, 1.0, 0.97])
+    assert fracture_energy.peak(rise) == 1.0
+    assert fracture_energy.peak(np.append(rise, [0.5, -0.2, 1.2])) == 1.0
+    assert fracture_energy.peak(np.append([0.0, 0.2, 0.1], rise)) == 1.0  # a ripple early on is no break

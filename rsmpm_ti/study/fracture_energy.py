@@ -23,6 +23,9 @@ SEAM_WIDTH, SEAM_STRENGTH = 10e-3, 0.7
 
 SIZES = (1e-3, 0.5e-3, 0.25e-3)
 
+FALL = 0.9
+"""A strip has broken when its stress is below this share of the largest so far: what comes after is waves."""
+
 
 @dataclass(frozen=True, kw_only=True)
 class Seam:
@@ -36,7 +39,7 @@ class Seam:
         return np.where(np.abs(x[:, 1] - 0.5 * HEIGHT) < 0.5 * self.height, SEAM_STRENGTH, 1.0)
 
 
-def strip(dx: float, width: float, region, rock, strain: float, seeding: Lattice | Jittered) -> Scene:
+def strip(dx: float, width: float, region, rock, strain: float, seeding, time_scale: float) -> Scene:
     """A strip of `region` pulled apart between bonded platens up to `strain`."""
     platens = (
         Platen(axis=1, side="lower", position=0.0, speed=-2.5e-3, bonded=True),
@@ -47,7 +50,7 @@ def strip(dx: float, width: float, region, rock, strain: float, seeding: Lattice
         domain=Domain(lower=(-5e-3, 0.0), upper=(width + 5e-3, HEIGHT), dx=dx),
         bodies=(Body(region=region, seeding=seeding),),
         rock=rock,
-        loading=Loading(boundaries=platens, start=Affine(), time_scale=5.0, width=width),
+        loading=Loading(boundaries=platens, start=Affine(), time_scale=time_scale, width=width),
         schedule=Schedule(strain_end=-strain),
     )
 
@@ -74,15 +77,23 @@ def pull_notched(*, dx: float, paper: bool) -> dict:
         for a, b in ((-dx, NOTCH), (WIDTH - NOTCH, WIDTH + dx))
     )
     region = Difference(whole=Box(lower=(0.0, 0.0), upper=(WIDTH, HEIGHT)), removed=notches)
-    return curve(strip(dx, WIDTH, region, rock, 1e-4 if paper else 3e-4, Jittered(seed=1)))
+    # at a time scale of 5 waves from the notches still carry 3 % of the peak
+    return curve(strip(dx, WIDTH, region, rock, 1e-4 if paper else 1.6e-4, Jittered(seed=1), 2.0))
 
 
 def pull_seam(*, dx: float, jittered: bool) -> dict:
     """A strip with a weak seam, until it is in two. On a lattice its crack stays in one row of cells."""
     rock = replace(load_scene("cube_lab", dx=dx).rock, heterogeneity=Seam(height=4.0 * dx))
     region = Box(lower=(0.0, 0.0), upper=(SEAM_WIDTH, HEIGHT))
-    result = curve(strip(dx, SEAM_WIDTH, region, rock, 1e-3, Jittered(seed=1) if jittered else Lattice()))
+    result = curve(strip(dx, SEAM_WIDTH, region, rock, 1e-3, Jittered(seed=1) if jittered else Lattice(), 5.0))
     return result | {"energy": np.array(rock.after_failure.softening.G_f_I)}
+
+
+def peak(stress: np.ndarray) -> float:
+    """Largest stress [Pa] of a curve up to where it first falls below FALL of the largest so far."""
+    most = np.maximum.accumulate(stress)
+    broken = np.flatnonzero((stress < FALL * most) & (most > 0.5 * stress.max()))
+    return float(most[broken[0]] if len(broken) else most[-1])
 
 
 def runs(quick: bool) -> list[Run]:
@@ -105,10 +116,10 @@ def finish(results: dict) -> Outcome:
         law, dx = tag.split("_")
         if law not in peaks:
             got, name = result["dissipated"][-1] / SEAM_WIDTH, f"energy per crack area, {law}, dx {dx} mm [J/m2]"
-            why = "what was asked for; a crack that steps between rows of cells costs more than a straight one"
+            why = "what was asked for"
             rows.append(relative(name, float(result["energy"]), got, 0.05, why))
         else:
-            peaks[law][float(dx)] = result["stress"].max() * WIDTH / LIGAMENT
+            peaks[law][float(dx)] = peak(result["stress"]) * WIDTH / LIGAMENT
     lab, paper = (np.array(list(peaks[law].values())) for law in ("lab", "paper"))
     rows.append(at_most("directional: peak, (max - min)/mean", np.ptp(lab) / lab.mean(), 0.05, "what was asked for"))
     sizes = np.array(list(peaks["paper"]))
@@ -129,7 +140,7 @@ def finish(results: dict) -> Outcome:
                 1e3 * result["strain"], 1e-6 * result["stress"] * WIDTH / LIGAMENT, style, color=colour, label=label,
                 linewidth=1.0,
             )  # fmt: skip
-        left.set(xlabel="axial strain [1e-3]", ylabel="stress on the ligament [MPa]", xlim=(0, 0.45))
+        left.set(xlabel="axial strain [1e-3]", ylabel="stress on the ligament [MPa]", xlim=(0, 0.17))
         left.legend(fontsize=7)
         for law, marker in (("lab", "o-"), ("paper", "s--")):
             dx = np.array(list(peaks[law]))

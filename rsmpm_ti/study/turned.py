@@ -14,8 +14,9 @@ from rsmpm_ti.laws import CompressionOnly
 from rsmpm_ti.observe import read_events
 from rsmpm_ti.regions import Difference, Slit
 from rsmpm_ti.seeding import Jittered, Lattice
-from rsmpm_ti.snapshot import TENSION
+from rsmpm_ti.snapshot import SHEAR, TENSION
 from rsmpm_ti.spec import Body, Domain, Loading, Scene, Schedule
+from rsmpm_ti.study.flaw_cracks import first_directions, lost_in_tension, near_flaw
 
 HEIGHT, WIDTH, SIDE = 100e-3, 50e-3, 124e-3
 """Specimen, and edge of the square domain in which it may turn [m]."""
@@ -26,8 +27,11 @@ CAP = 5e-3
 SMOOTH_START = 2e-3
 """Time in which the rate of loading rises [s]."""
 
-YOUNG, GROWN, LOOKS = 5e-3, 21e-3, 200
-"""A wing is measured when it is so long along the load axis [m]: its first direction, then its path. Looks in a run."""
+GROWN, LOOKS = 21e-3, 400
+"""A run ends when both wings are so long along the load axis [m]. Looks in a run."""
+
+ENDS = {"0": 1.0, "1": -1.0}
+"""The wings: of the flaw's upper end, and of its lower one, whose places are turned by 180 degrees onto the other's."""
 
 
 @ti.data_oriented
@@ -86,57 +90,65 @@ def turned_scene(*, angle: float, dx: float, seed: int, paper: bool, end: float,
     )
 
 
-def opened(drive: Drive, dx: float) -> tuple[np.ndarray, np.ndarray]:
-    """Places [m] of particles that have cracked in tension, and how far each has opened [m]."""
-    particles = drive.sim.particles
-    place = particles.reference.to_numpy() + particles.u.to_numpy()
-    if particles.cracks:
-        gap = particles.opening.to_numpy()[:, 0] * drive.sim.band
-    else:
-        gap = np.maximum(particles.J.to_numpy() - 1.0, 0.0) * dx
-    cracked = (particles.mode.to_numpy() == TENSION) & (gap > 0.0)
-    return place[cracked], gap[cracked]
-
-
 def grow(*, angle: float, dx: float, seed: int, paper: bool, end: float, time_scale: float) -> dict:
     """Load until both wings are GROWN long, or up to `end` [Pa].
 
-    Of each wing, "0" the upper and "1" the lower one, turned back and the lower one by 180 degrees: place and gap of
-    what has opened when it was YOUNG and when it was GROWN (or at the end), place of its first failure; all [m].
-    Loads [Pa].
+    Of each wing, all turned back: `failed`, places [n, 2] of what failed in tension, in order of time [m]; `first`,
+    angles from the flaw's plane of the first cracks at its end, seen when they had just begun [k] [degrees], none by
+    the paper's rule. `onset`, `shear`: loads when strength is first lost and when the first particle fails in shear,
+    NaN if none does; `load` and `wings`: at every look, with the wings' lengths [k, 2] [m]; loads in Pa.
     """
     real = ti.lang.impl.get_runtime().default_fp
     scene = turned_scene(angle=angle, dx=dx, seed=seed, paper=paper, end=end, time_scale=time_scale)
     drive = Drive(scene, scene.particles(), real)
     traction = scene.loading.force_field
-    turn = math.radians(angle)
-    back = np.array([[math.cos(turn), -math.sin(turn)], [math.sin(turn), math.cos(turn)]])
-    tip = 0.5 * scene.bodies[0].region.removed[0].length * math.sin(math.radians(45.0))
-    wings, stopped = {}, ""
+    (flaw,) = scene.bodies[0].region.removed
+    tip = 0.5 * flaw.length * math.sin(math.radians(flaw.angle - angle))
+    first, load, wings, stopped = {}, [], [], ""
     for look in range(1, LOOKS + 1):
         try:
             drive.advance(max(0, round(drive.clock.total * look / LOOKS) - drive.clock.step))
         except UnstableRun as error:
             stopped = str(error)
-        events = read_events(drive.sim)
-        failed = (events.x[events.mode == TENSION].astype(float) - 0.5 * SIDE) @ back
-        for name, sign in (("0", 1.0), ("1", -1.0)):
-            side = failed[sign * failed[:, 1] > 0.0] * sign
-            for age, length in (("young", YOUNG), ("grown", GROWN)):
-                ripe = len(side) > 0 and (side[:, 1].max() - tip > length or stopped or look == LOOKS)
-                if ripe and f"{age}_x_{name}" not in wings:
-                    place, gap = opened(drive, dx)
-                    place = (place.astype(float) - 0.5 * SIDE) @ back * sign
-                    half = place[:, 1] > 0.0
-                    wings |= {f"{age}_x_{name}": place[half], f"{age}_gap_{name}": gap[half]}
-                    wings[f"start_{name}"] = side[0]
-        if {"grown_x_0", "grown_x_1"} <= wings.keys() or stopped:
+        if not paper and len(first) < len(ENDS):
+            first = first_cracks(drive, flaw) | first
+        failed = failed_places(drive, angle)
+        load.append(float(traction.load(drive.clock.time)))
+        wings.append([side[:, 1].max(initial=tip) - tip for side in failed.values()])
+        if stopped or min(wings[-1]) > GROWN:
             break
+    events = read_events(drive.sim)
+    shear = events.time[events.mode == SHEAR]
     return {
-        "load": traction.load(drive.clock.time),
+        "load": np.array(load),
+        "wings": np.array(wings),
         "onset": traction.load(min(drive.sim.events.onset[None], events.time.min(initial=np.inf))),
+        "shear": traction.load(shear[0]) if len(shear) else np.array(np.nan),
         "particles": np.array(drive.sim.particles.count),
         "steps": np.array(drive.clock.step),
         "stopped": np.array(stopped),
-        **wings,
+        **{f"first_{name}": angles for name, angles in first.items()},
+        **{f"failed_{name}": places for name, places in failed_places(drive, angle).items()},
     }
+
+
+def first_cracks(drive: Drive, flaw: Slit) -> dict[str, np.ndarray]:
+    """For each end of the flaw where cracks have begun: their angles from the flaw's plane [k] [degrees]."""
+    places, normals = lost_in_tension(drive)
+    near, begun = near_flaw(flaw, places)
+    normals = normals[near] - math.radians(flaw.angle)
+    found = {}
+    for name, sign in ENDS.items():
+        side = sign * begun[:, 0] > 0.0
+        if side.any():
+            found[name] = first_directions(begun[side], normals[side], 0.5 * flaw.length)
+    return found
+
+
+def failed_places(drive: Drive, angle: float) -> dict[str, np.ndarray]:
+    """For each end of the flaw: places of tensile failures in its half of the specimen, turned back [n, 2] [m]."""
+    turn = math.radians(angle)
+    back = np.array([[math.cos(turn), -math.sin(turn)], [math.sin(turn), math.cos(turn)]])
+    events = read_events(drive.sim)
+    x = (events.x[events.mode == TENSION].astype(float) - 0.5 * SIDE) @ back
+    return {name: sign * x[sign * x[:, 1] > 0.0] for name, sign in ENDS.items()}
