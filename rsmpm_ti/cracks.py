@@ -64,6 +64,33 @@ def leaving_angle(points: np.ndarray, start: np.ndarray, outward: np.ndarray) ->
     return float(np.degrees(np.arccos(np.clip(direction @ outward, -1.0, 1.0))))
 
 
+def crack_directions(local: np.ndarray, normal: np.ndarray, half: float) -> np.ndarray:
+    """Angles from a flaw's plane, outwards, at which cracks beside it point away from it [k], [degrees].
+
+    local [k, 2]: places along and across the flaw from its middle [m]; normal [k]: of the cracks, from the flaw's plane
+    [rad]; half: of the flaw's length, between the centres of its round ends [m]. A crack is a line; of its two
+    directions the one counts that leads away from the flaw's face beside it.
+    """
+    end = np.sign(local[:, 0])
+    face = np.stack([end * np.maximum(np.abs(local[:, 0]) - half, 0.0), local[:, 1]], axis=1)
+    line = np.stack([-np.sin(normal), np.cos(normal)], axis=1)
+    along = line[:, 0] * np.where(np.sum(line * face, axis=1) < 0.0, -1.0, 1.0)
+    return np.degrees(np.arccos(np.clip(end * along, -1.0, 1.0)))
+
+
+def first_crack_angles(x: np.ndarray, normal: np.ndarray, slit: Slit) -> list[float]:
+    """Mean angle from the flaw's plane of the FEWEST first cracks at each end, the end along +direction first; NaN for
+    fewer. x [e, 2] [m], normal [e] [rad from +x]: of tension failures in order of time."""
+    local, normal = slit.frame(x), normal - np.radians(slit.angle)
+    ends = np.array([[0.5 * slit.length, 0.0], [-0.5 * slit.length, 0.0]])
+    near = [np.flatnonzero(np.linalg.norm(local - end, axis=1) < TIP_RADIUS + 0.5 * slit.width) for end in ends]
+    angles, half = [], 0.5 * (slit.length - slit.width)
+    for k in near:
+        first = crack_directions(local[k[:FEWEST]], normal[k[:FEWEST]], half)
+        angles.append(float(first.mean()) if len(first) == FEWEST else float("nan"))
+    return angles
+
+
 def _connected(x: np.ndarray, reach: float, seed: int, allowed: np.ndarray) -> np.ndarray:
     """Indices of the points joined to `seed` through gaps of at most `reach`."""
     pairs = cKDTree(x).query_pairs(reach, output_type="ndarray")

@@ -19,6 +19,8 @@ def record_failure(sim: ti.template(), p, mode, extremes, released, time):
     events.released[e] = released
     events.mode[e] = mode
     events.id[e] = particles.id[p]
+    if ti.static(events.directional):
+        events.crack_angle[e] = particles.crack_angle[p]
 
 
 @ti.func

@@ -17,7 +17,10 @@ J_BOUNDS = (0.05, 20.0)
 
 @dataclass(frozen=True)
 class EventTable:
-    """Failure events in the order of time. Shapes [e], x [e, dim]; SI; mode 1 tension, 2 shear."""
+    """Failure events in the order of time. Shapes [e], x [e, dim]; SI; mode 1 tension, 2 shear.
+
+    crack_angle: of the normal of the particle's crack, from +x [rad]; None for rock without a direction.
+    """
 
     time: np.ndarray
     x: np.ndarray
@@ -26,6 +29,7 @@ class EventTable:
     sigma_3: np.ndarray
     released: np.ndarray
     id: np.ndarray
+    crack_angle: np.ndarray | None = None
     onset: float = np.inf
     """When a particle of rock with a direction first began to lose strength [s]: not after the first event."""
 
@@ -36,10 +40,10 @@ class EventTable:
 def read_events(sim: Simulation) -> EventTable:
     """All events so far, sorted by time, then particle id, so that threads do not show."""
     events, n = sim.events, sim.events.count[None]
-    columns = {
-        name: getattr(events, name).to_numpy()[:n] if n else getattr(events, name).to_numpy()[:0]
-        for name in ("time", "x", "mode", "sigma_1", "sigma_3", "released", "id")
-    }
+    names = ["time", "x", "mode", "sigma_1", "sigma_3", "released", "id"]
+    if events.directional:
+        names.append("crack_angle")
+    columns = {name: getattr(events, name).to_numpy()[:n] for name in names}
     order = np.lexsort((columns["id"], columns["time"]))
     columns = {name: column[order] for name, column in columns.items()}
     return EventTable(**columns, onset=float(events.onset[None]))

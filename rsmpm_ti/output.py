@@ -39,15 +39,23 @@ def write_history(path: Path, history: np.ndarray) -> None:
 
 
 def write_events(path: Path, events) -> None:
-    """events.csv: time, place, mode, extreme principal stresses and released energy of each failure."""
+    """events.csv: time, place, mode, extreme principal stresses and released energy of each failure.
+
+    Of rock with a direction also the angle of the crack's normal from +x [degrees].
+    """
     axes = "xyz"[: events.x.shape[1]]
     header = ["time_s", *(f"{a}_m" for a in axes), "mode", "sigma_1_Pa", "sigma_3_Pa", "released_energy_J"]
+    directional = events.crack_angle is not None
+    if directional:
+        header.append("crack_normal_deg")
     with complete(path) as part, open(part, "w", newline="", encoding="utf-8") as file:
         writer = csv.writer(file)
         writer.writerow(header)
         for e in range(len(events)):
             numbers = [events.time[e], *events.x[e]]
             stresses = [events.sigma_1[e], events.sigma_3[e], events.released[e]]
+            if directional:
+                stresses.append(np.degrees(events.crack_angle[e]))
             writer.writerow(
                 [*(f"{v:.10g}" for v in numbers), MODE_NAMES[events.mode[e]], *(f"{v:.10g}" for v in stresses)]
             )

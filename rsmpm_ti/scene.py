@@ -161,7 +161,7 @@ def report(result) -> str:
         f"of run, {s['painting_s']:.1f} s of it painting; {speed:.1f} M particle-steps/s"
     ]
     if s["onset_stress_Pa"] is not None and s["onset_stress_Pa"] != s["first_failure_stress_Pa"]:
-        lines.append(f"strength begins to be lost at {s['onset_stress_Pa'] / 1e6:.3f} MPa; failed: half of it lost")
+        lines.append(f"strength begins to be lost at {s['onset_stress_Pa'] / 1e6:.3f} MPa; failed: open by half of it")
     if s["first_failure_stress_Pa"] is not None:
         place = ", ".join(f"{1e3 * c:.2f}" for c in s["first_failure_position_m"])
         stress = s["first_failure_stress_Pa"] / 1e6
@@ -169,9 +169,12 @@ def report(result) -> str:
     if s["peak_stress_Pa"] is not None:
         counts = f"failed {s['failed_tension']} in tension, {s['failed_shear']} in shear"
         lines.append(f"peak stress: {s['peak_stress_Pa'] / 1e6:.3f} MPa; {counts}")
-    angles = [f"{a:.0f}" for a in s["initiation_angles_deg"] if a is not None]
+    key, what = "initiation_angles_deg", "cracks leave the flaw"
+    if s["first_crack_angles_deg"]:  # rock that softens: its first 3 mm fail only when much around them has cracked
+        key, what = "first_crack_angles_deg", "first cracks lie"
+    angles = [f"{a:.0f}" for a in s[key] if a is not None]
     if angles:
-        lines.append(f"cracks leave the flaw at {' and '.join(angles)} degrees from its plane")
+        lines.append(f"{what} at {' and '.join(angles)} degrees from the flaw's plane")
     if s["platen_imbalance"] is not None:
         lines.append(
             f"up to first failure: platen imbalance {100 * s['platen_imbalance']:.2g} %, "

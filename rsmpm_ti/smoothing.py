@@ -67,7 +67,9 @@ def read_openings(sim: ti.template()):
     """Crack strain of each cracked particle if its band had the opening of the rock around: Bazant & Lin (1988).
 
     J. Struct. Eng. 114:2493. What averaging makes of a band is highest in its middle and falls off as a Gaussian; the
-    slope across the crack tells how far the middle is, so that all rows of a band lose strength together.
+    slope across the crack tells how far away the middle is, so that all rows of a band lose strength together. Beyond
+    half the band's width that fades, and beyond the whole of it there is none: the mean of a crack that gapes reaches
+    far, but what cracks there is no part of it.
     """
     particles, means = sim.particles, sim.means
     for p in particles.mode:
@@ -86,9 +88,10 @@ def read_openings(sim: ti.template()):
                 gradient += (total[5] - strain / volume * total[4]) * slope
             n = ti.Vector([ti.cos(particles.crack_angle[p]), ti.sin(particles.crack_angle[p])])
             away = ti.abs(gradient.dot(n)) * means.variance / ti.max(strain, 1e-30)
+            part = ti.max(0.0, ti.min(1.0, 2.0 - 2.0 * away / sim.band))
             away = ti.min(away, 0.5 * sim.band)
-            peak = ti.exp(0.5 * away * away / means.variance)
-            particles.mean_opening[p] = peak * strain / volume / means.band_share
+            middle = ti.exp(0.5 * away * away / means.variance) * strain / volume
+            particles.mean_opening[p] = part * middle / means.band_share
 
 
 @ti.kernel

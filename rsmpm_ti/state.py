@@ -165,9 +165,12 @@ class Events:
         # when a particle first begins to lose strength: without fracture energy that is the first event
         self.onset = ti.field(ti.f64, ())
         self.onset[None] = np.inf
-        if scene.rock.criterion.breaks and scene.rock.after_failure.directional:
+        self.directional = scene.rock.criterion.breaks and scene.rock.after_failure.directional
+        if self.directional:
             capacity *= 2  # a particle that failed in tension may fail in shear later
         capacity = capacity if scene.rock.criterion.breaks else 1
+        if self.directional:
+            self.crack_angle = ti.field(real, capacity)  # of the crack's normal [rad]
         self.time, self.sigma_1 = ti.field(ti.f64, capacity), ti.field(real, capacity)
         self.sigma_3, self.released = ti.field(real, capacity), ti.field(real, capacity)
         self.x = ti.Vector.field(scene.dim, real, capacity)

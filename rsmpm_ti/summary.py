@@ -4,7 +4,7 @@ import bisect
 
 import numpy as np
 
-from rsmpm_ti.cracks import half_turn_mismatch, wings
+from rsmpm_ti.cracks import first_crack_angles, half_turn_mismatch, wings
 from rsmpm_ti.nominal import loading_curve
 from rsmpm_ti.observe import EventTable
 from rsmpm_ti.regions import slits_of
@@ -41,6 +41,7 @@ def summarise(scene: Scene, history: np.ndarray, events: EventTable, energy_star
         "first_failure_mode": None,
         "first_failure_position_m": None,
         "initiation_angles_deg": [],
+        "first_crack_angles_deg": [],
         "wing_reach_m": [],
         "half_turn_mismatch_m": None,
         "failed_tension": int(np.sum(events.mode == TENSION)),
@@ -114,6 +115,10 @@ def _crack_numbers(scene: Scene, events: EventTable) -> dict:
     spacing = scene.domain.dx / body.seeding.particles_per_axis
     pair = wings(events.x[events.mode == TENSION], slit, spacing)
     out = {"initiation_angles_deg": [None if w is None or np.isnan(w.angle) else w.angle for w in pair]}
+    if events.crack_angle is not None:
+        tension = events.mode == TENSION
+        angles = first_crack_angles(events.x[tension].astype(float), events.crack_angle[tension].astype(float), slit)
+        out["first_crack_angles_deg"] = [None if np.isnan(angle) else angle for angle in angles]
     platens = scene.loading.platens
     if platens:
         axis, centre = platens[0].axis, slit.centre

@@ -13,6 +13,7 @@ from rsmpm_ti.laws import CompressionOnly, Hooke, MohrCoulomb, NoViscosity, Rock
 from rsmpm_ti.material import check_and_release, update_stress
 from rsmpm_ti.measure import survey
 from rsmpm_ti.observe import guard, read_events
+from rsmpm_ti.output import write_events
 from rsmpm_ti.regions import Box
 from rsmpm_ti.shape import Linear
 from rsmpm_ti.softening import Brittle, LinearSoftening
@@ -157,3 +158,16 @@ def test_failed_particle_of_the_paper_that_gapes_stops_a_run():
     sim.particles.mode.fill(1)
     with pytest.raises(UnstableRun, match="J = 30"):
         guard(sim, Clock(sim), survey(sim))
+
+
+def test_events_name_the_normal_of_their_crack(tmp_path):
+    """Pulled along y, cracks have their normal at 90 degrees, in the table and in the file; the paper's have none."""
+    sim = cell(Directional(softening=Brittle()))
+    pull(sim, 200, STEP)
+    events = read_events(sim)
+    assert np.abs(np.sin(events.crack_angle)) == pytest.approx(np.ones(4), abs=1e-9)
+    write_events(tmp_path / "events.csv", events)
+    header, *rows = (tmp_path / "events.csv").read_text().splitlines()
+    assert header.endswith(",crack_normal_deg") and len(rows) == 4
+    assert all(abs(float(row.split(",")[-1])) == pytest.approx(90.0) for row in rows)
+    assert read_events(cell(CompressionOnly())).crack_angle is None

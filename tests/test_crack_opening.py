@@ -36,11 +36,11 @@ def test_what_averaging_leaves_of_a_band(length):
 
 def opened(sim, angle: float, half: float) -> tuple[np.ndarray, np.ndarray]:
     """(mean crack strain, distance from the crack [m]) of cracked particles: within `half` [m] of a line through the
-    middle with its normal at `angle` [degrees], which share the opening W, and of as many beside them, shut."""
+    middle with its normal at `angle` [degrees], which share the opening W, and of those up to 1.5 bands away, shut."""
     x = places(sim) - 0.5 * CELLS * DX
     n = np.array([math.cos(math.radians(angle)), math.sin(math.radians(angle))])
     away = np.abs(x @ n)
-    inside, cracked = away < half, away < 2.0 * half
+    inside, cracked = away < half, away < 1.5 * BAND
     particles = sim.particles
     strain = np.where(inside, W / (2.0 * half), np.where(cracked, FRESH, 0.0))
     particles.widest.from_numpy(np.stack([strain, 0.0 * strain], axis=1))
@@ -61,8 +61,10 @@ def reading(d: np.ndarray, width: float, length: float) -> np.ndarray:
     mean = (norm.cdf(ends[0]) - norm.cdf(ends[1])) / width
     slope = (norm.pdf(ends[0]) - norm.pdf(ends[1])) / (width * length)
     variance = length**2 + BAND**2 / 12.0
-    away = np.minimum(np.abs(slope) / mean * variance, 0.5 * BAND)
-    return mean * np.exp(0.5 * away**2 / variance) * BAND / (2.0 * norm.cdf(0.5 * BAND / length) - 1.0)
+    away = np.abs(slope) / mean * variance
+    part = np.clip(2.0 - 2.0 * away / BAND, 0.0, 1.0)
+    away = np.minimum(away, 0.5 * BAND)
+    return part * mean * np.exp(0.5 * away**2 / variance) * BAND / (2.0 * norm.cdf(0.5 * BAND / length) - 1.0)
 
 
 @pytest.mark.parametrize("ratio", [1.0, 2.0])
@@ -71,16 +73,17 @@ def test_rows_of_a_crack_lose_strength_by_the_opening_that_they_share(ratio, ang
     """A band of the assumed width, turned, and one half as wide: nearly all rows read the opening W.
 
     Sixteen particles in a cell: with four, a turned band holds a few per cent more rock here than there. At a length of
-    one cell the mean of the narrow band is not quite Gaussian: 5 %.
+    one cell the mean of the narrow band is not quite Gaussian: 7 %.
     """
     sim = block(CELLS, length=ratio * DX, seeding=Lattice(particles_per_axis=4))
     strain, away = opened(sim, angle, 0.5 * rows * BAND)
     expected = reading(away, rows * BAND, ratio * DX)
     read = strain * BAND / W
     assert len(read) > 50
-    assert np.abs(read - expected).mean() < (0.03 if rows == 1.0 or ratio == 2.0 else 0.06)
+    assert np.abs(read - expected).mean() < (0.03 if rows == 1.0 or ratio == 2.0 else 0.07)
     near = away < 0.5 * BAND
     if rows == 1.0 or ratio == 2.0:
+        assert (read[away > 1.2 * BAND] == 0.0).all()
         assert read[near].mean() == pytest.approx(1.0, abs=0.04) and read[near].std() < 0.04
 
 

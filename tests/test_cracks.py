@@ -1,9 +1,11 @@
 """Cracks read from synthetic bands of failed particles whose angles and offsets are known."""
 
+import math
+
 import numpy as np
 import pytest
 
-from rsmpm_ti.cracks import half_turn_mismatch, wings
+from rsmpm_ti.cracks import crack_directions, first_crack_angles, half_turn_mismatch, wings
 from rsmpm_ti.regions import Slit
 
 SPACING = 0.25e-3
@@ -105,3 +107,31 @@ def test_wings_shorter_than_the_length_are_not_compared():
     first = band(45.0, length=6e-3)
     pair = wings(np.concatenate([first, half_turn(first)]), FLAW, SPACING)
     assert np.isnan(half_turn_mismatch(pair, FLAW, 1, 0.012, 1e-3))
+
+
+def test_direction_leads_away_from_the_face_beside_it():
+    begun = np.array([[7.2e-3, 1.2e-3], [-7.2e-3, -1.2e-3], [0.1e-3, 1.6e-3], [-0.1e-3, 1.6e-3], [7.6e-3, 0.0]])
+    for turn in (0.0, math.pi):  # a normal has no sense
+        got = crack_directions(begun, np.radians([30.0, 30.0, 0.0, 0.0, 90.0]) + turn, 6e-3)
+        assert got == pytest.approx([120.0, 120.0, 90.0, 90.0, 0.0], abs=1e-4)
+
+
+@pytest.mark.parametrize("angle", [0.0, 45.0, -60.0])
+def test_first_crack_angles_are_those_of_the_first_six_cracks_at_each_end(angle):
+    """Cracks at 70 and 100 degrees from the flaw's plane at its two ends; later and farther ones do not count."""
+    slit = Slit(centre=(0.02, 0.05), length=15e-3, width=3e-3, angle=angle, rounded=True)
+    t = slit.direction
+    n = np.array([-t[1], t[0]])
+    x, normal = [], []
+    for k in range(8):
+        for end, lean in ((1.0, 70.0), (-1.0, 100.0)):
+            # the crack is a line at `lean` from end t towards end n; its normal a quarter turn from it
+            x.append(np.array(slit.centre) + end * ((7.5e-3 + 1e-4 * k) * t + 1e-3 * n))
+            late = 0.0 if k < 6 else 40.0
+            normal.append(math.radians(angle + lean + late + 90.0))
+        x.append(np.array(slit.centre) + 5e-3 * n)  # beside the middle
+        normal.append(math.radians(angle))
+    got = first_crack_angles(np.array(x), np.array(normal), slit)
+    assert got == pytest.approx([70.0, 100.0], abs=1e-4)
+    few = first_crack_angles(np.array(x)[:15], np.array(normal)[:15], slit)  # five at each end
+    assert np.isnan(few).all()

@@ -7,7 +7,7 @@ import pytest
 
 from rsmpm_ti.study import flaw_angle
 from rsmpm_ti.study.flaw_angle import HALF, STUDIES, fit, predict, trend
-from rsmpm_ti.study.flaw_cracks import GROWN, first_directions, flawed_scene, read_beginning, wings
+from rsmpm_ti.study.flaw_cracks import GROWN, flawed_scene, read_beginning, wings
 from rsmpm_ti.study.gmts import critical_distance, sif_cube
 
 SPACING = 0.25e-3
@@ -67,13 +67,6 @@ def test_onset_is_the_load_when_the_first_particle_lost_strength():
     result = straight("cube", 80.0, 3e6)
     result["stress"] = np.minimum(result["stress"], 3e6)  # from then on the load rests
     assert read_beginning(result).stress == pytest.approx(3e6, rel=1e-9)  # a straight line until then
-
-
-def test_direction_leads_away_from_the_face_beside_it():
-    begun = np.array([[7.2e-3, 1.2e-3], [-7.2e-3, -1.2e-3], [0.1e-3, 1.6e-3], [-0.1e-3, 1.6e-3], [7.6e-3, 0.0]])
-    for turn in (0.0, math.pi):  # a normal has no sense
-        got = first_directions(begun, np.radians([30.0, 30.0, 0.0, 0.0, 90.0]) + turn, 7.5e-3)
-        assert got == pytest.approx([120.0, 120.0, 90.0, 90.0, 0.0], abs=1e-4)
 
 
 def test_crack_from_the_middle_is_not_taken_for_one_from_an_end():

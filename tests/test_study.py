@@ -13,7 +13,8 @@ from rsmpm_ti.study import fracture_energy, runs
 from rsmpm_ti.study.__main__ import main
 from rsmpm_ti.study.catalogue import STUDIES
 from rsmpm_ti.study.grid_independence import BIN, FLAW, PATH, read_wing, spread
-from rsmpm_ti.study.runs import Run, kept, run_all
+from rsmpm_ti.study.runs import Run, Study, kept, run_all
+from rsmpm_ti.verify.case import Outcome
 
 
 def squares(*, upto: int, log: str) -> dict:
@@ -72,6 +73,39 @@ def test_result_of_another_version_is_refused(stored, monkeypatch):
     run, folder = stored
     monkeypatch.setattr(runs, "__version__", "0.0.0")
     assert kept(run, folder) is None
+
+
+def test_result_of_other_sources_is_refused(stored, monkeypatch):
+    run, folder = stored
+    monkeypatch.setattr(runs, "sources", lambda work: "another solver")
+    assert kept(run, folder) is None
+
+
+def test_sources_are_those_of_the_work_the_solver_and_the_scenes(tmp_path, monkeypatch):
+    before = runs.sources.__wrapped__(squares)
+    assert before == runs.sources.__wrapped__(squares) != runs.sources.__wrapped__(fracture_energy.pull_seam)
+    (tmp_path / "scenes").mkdir()
+    (tmp_path / "scenes" / "mine.py").write_text("def scene(): ...")
+    monkeypatch.chdir(tmp_path)
+    assert runs.sources.__wrapped__(squares) != before
+
+
+def test_kept_only_draws_what_there_is_and_refuses_where_there_is_nothing(tmp_path, monkeypatch, capsys):
+    plan = [Run(name, squares, {"upto": 3}) for name in ("a", "b")]
+    seen = []
+
+    def finish(results):
+        seen.append(sorted(results))
+        return Outcome((), lambda figure: None)
+
+    monkeypatch.setitem(STUDIES, "toy", Study("toy", "two runs", lambda quick: plan, finish))
+    command = ["toy", "--kept", "--out", str(tmp_path)]
+    assert main(command) == 2
+    assert "without --kept" in capsys.readouterr().err and not seen
+    (tmp_path / "toy").mkdir()
+    np.savez(tmp_path / "toy" / "b.npz", stamp=np.array(runs.stamp(plan[1])), values=np.arange(3))
+    assert main(command) == 0 and seen == [["b"]]
+    assert (tmp_path / "toy" / "toy.png").is_file()
 
 
 def test_file_that_is_no_result_is_run_over(tmp_path):

@@ -1,4 +1,4 @@
-"""python -m rsmpm_ti.study [STUDY ...] [--list] [--quick] [--out DIR] [--jobs N]."""
+"""python -m rsmpm_ti.study [STUDY ...] [--list] [--quick] [--kept] [--out DIR] [--jobs N]."""
 
 import argparse
 import os
@@ -6,7 +6,7 @@ import sys
 from pathlib import Path
 
 from rsmpm_ti.study.catalogue import STUDIES
-from rsmpm_ti.study.runs import run_all
+from rsmpm_ti.study.runs import all_kept, run_all
 from rsmpm_ti.verify.report import draw, print_head, print_rows, write_table
 
 
@@ -18,6 +18,7 @@ def parser() -> argparse.ArgumentParser:
     p.add_argument("studies", nargs="*", metavar="STUDY", help="names of studies")
     p.add_argument("--list", action="store_true", help="list the studies and stop")
     p.add_argument("--quick", action="store_true", help="coarser and fewer runs")
+    p.add_argument("--kept", action="store_true", help="run nothing: table and picture of what is done so far")
     p.add_argument("--out", default="renders/study", metavar="DIR", help="where results and pictures go")
     p.add_argument("--jobs", type=int, default=os.cpu_count() or 1, metavar="N", help="runs at a time")
     return p
@@ -40,11 +41,14 @@ def main(arguments: list[str] | None = None) -> int:
         study, results, total = STUDIES[name], {}, 0.0
         folder = Path(options.out) / name
         runs = study.runs(options.quick)
-        for tag, result, seconds in run_all(runs, folder, options.jobs):
+        for tag, result, seconds in all_kept(runs, folder) if options.kept else run_all(runs, folder, options.jobs):
             results[tag] = result
             total += seconds
             print(f"{name}: {tag} ({len(results)} of {len(runs)}) {seconds:.0f} s", file=sys.stderr, flush=True)
-        outcome = study.finish({run.tag: results[run.tag] for run in runs})
+        if not results:
+            print(f"study: none of the runs of {name} is kept in {folder}; run it without --kept", file=sys.stderr)
+            return 2
+        outcome = study.finish({run.tag: results[run.tag] for run in runs if run.tag in results})
         draw(folder / f"{name}.png", outcome)
         write_table(folder / f"{name}.csv", [(name, row) for row in outcome.rows])
         print_head()

@@ -8,7 +8,7 @@ from scipy.sparse.csgraph import connected_components
 
 from rsmpm_ti import load_scene
 from rsmpm_ti.crack_path import REACH, neighbour_graph
-from rsmpm_ti.cracks import leaving_angle
+from rsmpm_ti.cracks import crack_directions, leaving_angle
 from rsmpm_ti.drive import Drive
 from rsmpm_ti.errors import UnstableRun
 from rsmpm_ti.nominal import loading_curve
@@ -158,19 +158,6 @@ def _wing(x: np.ndarray, side: np.ndarray, spacing: float) -> WingStart:
     return WingStart(float(np.linalg.norm(x - x[0], axis=1).max()), leaving_angle(x, x[0], outward))
 
 
-def first_directions(begun: np.ndarray, normal: np.ndarray, half: float) -> np.ndarray:
-    """Angles from the flaw's plane, outwards, at which the first cracks point away from the flaw [k], [degrees].
-
-    A crack is a line; of its two directions the one counts that leads away from the flaw's face beside it. half: half
-    the length of the flaw, a slit WIDTH wide with rounded ends [m]; begun [k, 2] [m], normal [k] [rad] as in `crack`.
-    """
-    end = np.sign(begun[:, 0])
-    face = np.stack([end * np.maximum(np.abs(begun[:, 0]) - (half - 0.5 * WIDTH), 0.0), begun[:, 1]], axis=1)
-    line = np.stack([-np.sin(normal), np.cos(normal)], axis=1)
-    along = line[:, 0] * np.where(np.sum(line * face, axis=1) < 0.0, -1.0, 1.0)
-    return np.degrees(np.arccos(np.clip(end * along, -1.0, 1.0)))
-
-
 @dataclass(frozen=True)
 class Beginning:
     """How a flaw cracked: nominal stress at onset [Pa], place along the flaw over half its length, angle from its plane
@@ -191,7 +178,7 @@ def read_beginning(result: dict) -> Beginning:
     time, onset = result["time"], float(result["onset"])
     last = (time > (1.0 - LAST) * onset) & (time <= onset)
     stress = float(np.polyval(np.polyfit(time[last], result["stress"][last], 1), onset))
-    first = float(first_directions(begun, result["normal"], half).mean())
+    first = float(crack_directions(begun, result["normal"], half - 0.5 * WIDTH).mean())
     pair = wings(begun, result["x"], float(result["spacing"]), half)
     angles = [wing.angle for wing in pair if wing.length >= GROWN]
     return Beginning(stress, place_along(begun, half), first, float(np.mean(angles or [np.nan])))

@@ -1,5 +1,8 @@
 """What a study is: many runs, each in a process of its own and kept on disk, then rows and a picture from all."""
 
+import functools
+import hashlib
+import inspect
 import json
 import multiprocessing
 import time
@@ -10,6 +13,7 @@ from pathlib import Path
 import numpy as np
 
 from rsmpm_ti import __version__
+from rsmpm_ti.library import available
 from rsmpm_ti.output import complete
 from rsmpm_ti.verify.case import Outcome
 
@@ -34,9 +38,23 @@ class Study:
     finish: Callable[[dict], Outcome]
 
 
+@functools.cache
+def sources(work: Callable) -> str:
+    """Digest of the code that numbers of `work` depend on: its own file, the solver and the scenes.
+
+    So a kept result outlives no change of them: hours are lost by it now and then, but no picture is of another code.
+    """
+    solver = Path(__file__).resolve().parents[1].glob("*.py")
+    digest = hashlib.sha256()
+    for file in [Path(inspect.getfile(work)), *sorted(solver), *available().values()]:
+        digest.update(file.name.encode() + file.read_bytes())
+    return digest.hexdigest()
+
+
 def stamp(run: Run) -> str:
     """What a kept result must agree with to be used again."""
-    return json.dumps({"version": __version__, "precision": run.precision, **run.settings}, sort_keys=True)
+    common = {"version": __version__, "sources": sources(run.work), "precision": run.precision}
+    return json.dumps(common | run.settings, sort_keys=True)
 
 
 def kept(run: Run, folder: Path) -> dict | None:
@@ -61,16 +79,22 @@ def _work(task: tuple[Run, Path]) -> tuple[str, dict, float]:
     return run.tag, result, time.perf_counter() - start
 
 
+def all_kept(runs: list[Run], folder: Path) -> Iterator[tuple[str, dict, float]]:
+    """As `run_all`, of those kept from before only."""
+    for run in runs:
+        result = kept(run, folder)
+        if result is not None:
+            yield run.tag, result, 0.0
+
+
 def run_all(runs: list[Run], folder: Path, jobs: int) -> Iterator[tuple[str, dict, float]]:
     """(tag, result, seconds) of every run as it comes; those kept from before take no time."""
     folder.mkdir(parents=True, exist_ok=True)
-    waiting = []
-    for run in runs:
-        result = kept(run, folder)
-        if result is None:
-            waiting.append((run, folder))
-        else:
-            yield run.tag, result, 0.0
+    done = set()
+    for tag, result, seconds in all_kept(runs, folder):
+        done.add(tag)
+        yield tag, result, seconds
+    waiting = [(run, folder) for run in runs if run.tag not in done]
     if waiting:
         with multiprocessing.get_context("spawn").Pool(min(jobs, len(waiting)), maxtasksperchild=1) as pool:
             yield from pool.imap_unordered(_work, waiting)

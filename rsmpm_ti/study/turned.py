@@ -8,6 +8,7 @@ import taichi as ti
 
 from rsmpm_ti import load_scene
 from rsmpm_ti.averaging import Local
+from rsmpm_ti.cracks import crack_directions
 from rsmpm_ti.drive import Drive
 from rsmpm_ti.errors import UnstableRun
 from rsmpm_ti.laws import CompressionOnly
@@ -16,7 +17,7 @@ from rsmpm_ti.regions import Difference, Slit
 from rsmpm_ti.seeding import Jittered, Lattice
 from rsmpm_ti.snapshot import SHEAR, TENSION
 from rsmpm_ti.spec import Body, Domain, Loading, Scene, Schedule
-from rsmpm_ti.study.flaw_cracks import first_directions, lost_in_tension, near_flaw
+from rsmpm_ti.study.flaw_cracks import lost_in_tension, near_flaw
 
 HEIGHT, WIDTH, SIDE = 100e-3, 50e-3, 124e-3
 """Specimen, and edge of the square domain in which it may turn [m]."""
@@ -141,7 +142,7 @@ def first_cracks(drive: Drive, flaw: Slit) -> dict[str, np.ndarray]:
     for name, sign in ENDS.items():
         side = sign * begun[:, 0] > 0.0
         if side.any():
-            found[name] = first_directions(begun[side], normals[side], 0.5 * flaw.length)
+            found[name] = crack_directions(begun[side], normals[side], 0.5 * (flaw.length - flaw.width))
     return found
 
 
