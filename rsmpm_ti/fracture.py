@@ -5,11 +5,11 @@ from pathlib import Path
 
 import numpy as np
 
-from rsmpm_ti.crack_bands import Crack, find_bands, measure_cracks, openings
-from rsmpm_ti.crack_growth import rayleigh_speed
-from rsmpm_ti.emission import BValue, Catalogue, b_value, gather
-from rsmpm_ti.flaw_tips import flaw_tips, initiations
-from rsmpm_ti.fragments import Fragments, find_fragments
+from rsmpm_ti.cracks.bands import Crack, find_bands, measure_cracks, openings
+from rsmpm_ti.cracks.emission import BValue, Catalogue, b_value, gather
+from rsmpm_ti.cracks.fragments import Fragments, find_fragments
+from rsmpm_ti.cracks.growth import rayleigh_speed
+from rsmpm_ti.cracks.tips import flaw_tips, initiations
 from rsmpm_ti.nominal import load_at
 from rsmpm_ti.observe import EventTable
 from rsmpm_ti.output import write_table
@@ -26,7 +26,7 @@ class Fracture:
 
     cracks: list[Crack]
     openings: list[np.ndarray]  # opening and slip along each crack's path, [k, 2] [m]; no entries in 3D
-    initiation: list[dict]  # one per flaw tip, see `flaw_tips.initiations`; empty in 3D
+    initiation: list[dict]  # one per flaw tip, see `tips.initiations`; empty in 3D
     fragments: Fragments
     acoustic: Catalogue
     b: BValue | None
@@ -103,7 +103,7 @@ def write_fracture(out: Path, fracture: Fracture, history: np.ndarray) -> None:
 
 def _crack_columns(axes: str) -> tuple[str, ...]:
     """growth_m is the furthest distance within the band from where the crack began; tip_speed the largest over
-    `crack_growth.WINDOW`, in the run's own time; slip the faces' sliding on each other, dextral positive."""
+    `growth.WINDOW`, in the run's own time; slip the faces' sliding on each other, dextral positive."""
     return (
         "crack", "particles", "tension_failures", "shear_failures", "shear_share", "shear_energy_share",
         "released_energy_J", "initiation_time_s", "initiation_stress_Pa", "initiation_strain",

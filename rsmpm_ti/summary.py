@@ -4,7 +4,7 @@ import bisect
 
 import numpy as np
 
-from rsmpm_ti.cracks import first_crack_angles, half_turn_mismatch, wings
+from rsmpm_ti.cracks.wings import first_crack_angles, half_turn_mismatch, wings
 from rsmpm_ti.nominal import loading_curve
 from rsmpm_ti.observe import EventTable
 from rsmpm_ti.regions import slits_of

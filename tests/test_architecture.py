@@ -14,11 +14,12 @@ PACKAGE = ROOT / "rsmpm_ti"
 LAYERS = """
     errors units snapshot tensors regions seeding heterogeneity shape transfer averaging softening directional laws
     rocks confinement boundaries starts spec traversal state sorting crack_stress material node_update kernels
-    smoothing tracking margin measure stepper observe drive nominal crack_path cracks flaw_tips crack_growth aperture
-    crack_bands fragments emission summary output fracture record paint frames library run scene verify study bench
+    smoothing tracking margin measure stepper observe drive nominal cracks summary output fracture record paint frames
+    library run scene verify study bench
 """.split()
 """A module imports only from modules to the left of its own name."""
 
+CRACK_LAYERS = "path wings tips growth aperture bands fragments emission".split()
 PAINT_LAYERS = "view layout chrome raster ggui kinds figure summary movie".split()
 """The same within `rsmpm_ti/paint/`, which sees nothing else of the package than PAINT_SEES."""
 
@@ -31,15 +32,23 @@ STUDY_LAYERS = """
     runs flaw_cracks turned grid_independence fracture_energy shear_band gmts flaw_angle catalogue __main__
 """.split()
 BENCH_LAYERS = "settings yardstick speed measures front error __main__".split()
-"""The same within the packages verify, study and bench, which see every layer above their own name."""
+"""The same within the packages cracks, verify, study and bench, which see every layer above their own name."""
 
-ROOMS = {"paint": PAINT_LAYERS, "verify": VERIFY_LAYERS, "study": STUDY_LAYERS, "bench": BENCH_LAYERS}
+ROOMS = {
+    "cracks": CRACK_LAYERS,
+    "paint": PAINT_LAYERS,
+    "verify": VERIFY_LAYERS,
+    "study": STUDY_LAYERS,
+    "bench": BENCH_LAYERS,
+}
 
 PAINT_SEES = {"errors", "units", "snapshot"}
-WITHOUT_TAICHI = """
-    errors units snapshot regions seeding heterogeneity output nominal crack_path cracks flaw_tips crack_growth aperture
-    crack_bands fragments emission
+WITHOUT_TAICHI = (
+    """
+    errors units snapshot regions seeding heterogeneity output nominal cracks
 """.split()
+    + [f"cracks.{name}" for name in CRACK_LAYERS]
+)
 STRATEGY_FILES = ["heterogeneity", "shape", "transfer", "laws", "boundaries", "averaging", "softening", "directional"]
 MAY_INIT = {"rsmpm_ti/run.py", "tests/conftest.py"}
 VAGUE = {"util", "utils", "helper", "helpers", "manager", "managers", "engine", "engines"}
@@ -97,6 +106,7 @@ def own_module(name: str) -> str | None:
 
 def allowed_imports(module: str) -> set[str]:
     """Names, without the leading "rsmpm_ti.", that a listed module may import from this package."""
+    crackers = [f"cracks.{name}" for name in CRACK_LAYERS]
     painters = [f"paint.{name}" for name in PAINT_LAYERS]
     verifiers = [f"verify.{name}" for name in VERIFY_LAYERS]
     benches = [f"bench.{name}" for name in BENCH_LAYERS]
@@ -108,11 +118,13 @@ def allowed_imports(module: str) -> set[str]:
     if module in painters:
         return PAINT_SEES | set(painters[: painters.index(module)])
     above = set(LAYERS[: LAYERS.index(module.partition(".")[0])])
+    if "cracks" in above:
+        above |= set(crackers)
     if "paint" in above:
         above |= set(painters)
     if "verify" in above:
         above |= set(verifiers)
-    for rooms in (verifiers, studies, benches):
+    for rooms in (crackers, verifiers, studies, benches):
         if module in rooms:
             above |= set(rooms[: rooms.index(module)]) | {""}
     return above

@@ -5,11 +5,11 @@ import pytest
 from broken_bands import SPACING, failures, history, lattice, scattered, snapshot, strip
 from scipy.spatial import cKDTree
 
-from rsmpm_ti.aperture import jumps
-from rsmpm_ti.crack_bands import find_bands, measure_cracks, openings
-from rsmpm_ti.crack_growth import growth, rayleigh_speed, tip_speed
-from rsmpm_ti.cracks import FEWEST
-from rsmpm_ti.flaw_tips import flaw_tips, initiations
+from rsmpm_ti.cracks.aperture import jumps
+from rsmpm_ti.cracks.bands import find_bands, measure_cracks, openings
+from rsmpm_ti.cracks.growth import growth, rayleigh_speed, tip_speed
+from rsmpm_ti.cracks.tips import flaw_tips, initiations
+from rsmpm_ti.cracks.wings import FEWEST
 from rsmpm_ti.nominal import load_at
 from rsmpm_ti.regions import Slit
 

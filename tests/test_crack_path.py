@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from broken_bands import SPACING, lattice, scattered, strip
 
-from rsmpm_ti.crack_path import (
+from rsmpm_ti.cracks.path import (
     REACH,
     centre_path,
     distances,

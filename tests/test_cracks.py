@@ -5,7 +5,7 @@ import math
 import numpy as np
 import pytest
 
-from rsmpm_ti.cracks import crack_directions, first_crack_angles, half_turn_mismatch, wings
+from rsmpm_ti.cracks.wings import crack_directions, first_crack_angles, half_turn_mismatch, wings
 from rsmpm_ti.regions import Slit
 
 SPACING = 0.25e-3

@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 from broken_bands import SPACING, failures
 
-from rsmpm_ti.crack_path import REACH
-from rsmpm_ti.emission import FEWEST, b_value, gather
+from rsmpm_ti.cracks.emission import FEWEST, b_value, gather
+from rsmpm_ti.cracks.path import REACH
 
 SPEED = 1700.0
 R = REACH * SPACING

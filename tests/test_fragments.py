@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from broken_bands import SPACING, lattice, scattered, snapshot
 
-from rsmpm_ti.fragments import find_fragments
+from rsmpm_ti.cracks.fragments import find_fragments
 
 DENSITY = 2600.0
 BLOCK = lattice((0.0, 0.0), (10e-3, 20e-3))

@@ -7,8 +7,8 @@ import taichi as ti
 from scipy.sparse.csgraph import connected_components
 
 from rsmpm_ti import load_scene
-from rsmpm_ti.crack_path import REACH, neighbour_graph
-from rsmpm_ti.cracks import crack_directions, leaving_angle
+from rsmpm_ti.cracks.path import REACH, neighbour_graph
+from rsmpm_ti.cracks.wings import crack_directions, leaving_angle
 from rsmpm_ti.drive import Drive
 from rsmpm_ti.errors import UnstableRun
 from rsmpm_ti.nominal import loading_curve
@@ -126,7 +126,7 @@ def lost_in_tension(drive: Drive) -> tuple[np.ndarray, np.ndarray]:
 @dataclass(frozen=True)
 class WingStart:
     """One of the two cracks of a flaw: its length so far [m], and the angle from the flaw's plane at which it left,
-    over the first `cracks.FIT_LENGTH` [degrees]; 0 and NaN where nothing has failed."""
+    over the first `wings.FIT_LENGTH` [degrees]; 0 and NaN where nothing has failed."""
 
     length: float
     angle: float

@@ -44,7 +44,8 @@ def sources(work: Callable) -> str:
 
     So a kept result outlives no change of them: hours are lost by it now and then, but no picture is of another code.
     """
-    solver = Path(__file__).resolve().parents[1].glob("*.py")
+    package = Path(__file__).resolve().parents[1]
+    solver = [*package.glob("*.py"), *package.glob("cracks/*.py")]
     digest = hashlib.sha256()
     for file in [Path(inspect.getfile(work)), *sorted(solver), *available().values()]:
         digest.update(file.name.encode() + file.read_bytes())

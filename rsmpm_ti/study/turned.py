@@ -8,7 +8,7 @@ import taichi as ti
 
 from rsmpm_ti import load_scene
 from rsmpm_ti.averaging import Local
-from rsmpm_ti.cracks import crack_directions
+from rsmpm_ti.cracks.wings import crack_directions
 from rsmpm_ti.drive import Drive
 from rsmpm_ti.errors import UnstableRun
 from rsmpm_ti.laws import CompressionOnly

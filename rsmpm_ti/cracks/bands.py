@@ -10,11 +10,11 @@ from scipy.sparse import csr_array
 from scipy.sparse.csgraph import connected_components
 from scipy.spatial import cKDTree
 
-from rsmpm_ti.aperture import jumps
-from rsmpm_ti.crack_growth import WINDOW, growth, tip_speed
-from rsmpm_ti.crack_path import REACH, centre_path, distances, mean_direction, neighbour_graph, path_length, tortuosity
-from rsmpm_ti.cracks import FEWEST
-from rsmpm_ti.flaw_tips import FlawTip, first_angle, nearest_tip
+from rsmpm_ti.cracks.aperture import jumps
+from rsmpm_ti.cracks.growth import WINDOW, growth, tip_speed
+from rsmpm_ti.cracks.path import REACH, centre_path, distances, mean_direction, neighbour_graph, path_length, tortuosity
+from rsmpm_ti.cracks.tips import FlawTip, first_angle, nearest_tip
+from rsmpm_ti.cracks.wings import FEWEST
 from rsmpm_ti.snapshot import INTACT, TENSION, Snapshot
 
 

@@ -7,7 +7,7 @@ from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
 from scipy.spatial import cKDTree
 
-from rsmpm_ti.crack_path import REACH
+from rsmpm_ti.cracks.path import REACH
 from rsmpm_ti.snapshot import TENSION
 
 BIN = 0.1

@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from rsmpm_ti.cracks import FIT_LENGTH, TIP_RADIUS, leaving_angle
+from rsmpm_ti.cracks.wings import FIT_LENGTH, TIP_RADIUS, leaving_angle
 from rsmpm_ti.nominal import load_at
 from rsmpm_ti.regions import Slit
 from rsmpm_ti.snapshot import MODE_NAMES
@@ -47,11 +47,11 @@ def nearest_tip(x: np.ndarray, tips: tuple[FlawTip, ...]) -> np.ndarray:
 
 
 def first_angle(x: np.ndarray, mode: np.ndarray, outward: np.ndarray) -> float:
-    """Angle from a flaw's continuation at which a crack left [degrees], as `cracks.leaving_angle`; NaN for too few.
+    """Angle from a flaw's continuation at which a crack left [degrees], as `wings.leaving_angle`; NaN for too few.
 
     x [e, 2] [m], mode [e]: failures of one band from the crack's first on, in order of time. Only those of the first
     one's mode count, and only until the crack is twice FIT_LENGTH away: what crushes at the tip later is no direction
-    in which it left. (`cracks.wings` fits all failures in tension of the whole run.)
+    in which it left. (`wings.wings` fits all failures in tension of the whole run.)
     """
     far = np.linalg.norm(x - x[0], axis=1)
     away = (far > 2.0 * FIT_LENGTH) & (far < 3.0 * FIT_LENGTH)  # farther ones may have come from another tip
