@@ -23,7 +23,7 @@ SEAM_WIDTH, SEAM_STRENGTH = 10e-3, 0.7
 
 SIZES = (1e-3, 0.5e-3, 0.25e-3)
 
-FALL = 0.9
+FALL = 0.5
 """A strip has broken when its stress is below this share of the largest so far: what comes after is waves."""
 
 

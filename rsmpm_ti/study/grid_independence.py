@@ -97,7 +97,7 @@ def finish(results: dict) -> Outcome:
     for tag, result in results.items():
         family, dx, *_ = tag.split("_")
         families[family] += [(tag, read_wing(result, name, 1e-3 * float(dx))) for name in ENDS]
-        onset[family].append(float(result["onset"]))
+        onset[family] += [float(result[f"onset_{name}"]) for name in ENDS]
     asked = "what was asked for"
     first = np.array([wing.first for _, wing in families["lab"]])
     rows = [

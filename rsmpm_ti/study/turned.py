@@ -96,8 +96,9 @@ def grow(*, angle: float, dx: float, seed: int, paper: bool, end: float, time_sc
 
     Of each wing, all turned back: `failed`, places [n, 2] of what failed in tension, in order of time [m]; `first`,
     angles from the flaw's plane of the first cracks at its end, seen when they had just begun [k] [degrees], none by
-    the paper's rule. `onset`, `shear`: loads when strength is first lost and when the first particle fails in shear,
-    NaN if none does; `load` and `wings`: at every look, with the wings' lengths [k, 2] [m]; loads in Pa.
+    the paper's rule. `onset`: load when strength is first lost in tension near that end; `shear`: when the first
+    particle fails in shear; NaN if none does. `load` and `wings`: at every look, with the wings' lengths [k, 2] [m];
+    loads in Pa, known to a part in LOOKS of the whole.
     """
     real = ti.lang.impl.get_runtime().default_fp
     scene = turned_scene(angle=angle, dx=dx, seed=seed, paper=paper, end=end, time_scale=time_scale)
@@ -105,16 +106,17 @@ def grow(*, angle: float, dx: float, seed: int, paper: bool, end: float, time_sc
     traction = scene.loading.force_field
     (flaw,) = scene.bodies[0].region.removed
     tip = 0.5 * flaw.length * math.sin(math.radians(flaw.angle - angle))
-    first, load, wings, stopped = {}, [], [], ""
+    first, onset, load, wings, stopped = {}, {}, [], [], ""
     for look in range(1, LOOKS + 1):
         try:
             drive.advance(max(0, round(drive.clock.total * look / LOOKS) - drive.clock.step))
         except UnstableRun as error:
             stopped = str(error)
-        if not paper and len(first) < len(ENDS):
-            first = first_cracks(drive, flaw) | first
-        failed = failed_places(drive, angle)
         load.append(float(traction.load(drive.clock.time)))
+        if len(onset) < len(ENDS):
+            first = first_cracks(drive, flaw) | first
+            onset = dict.fromkeys(first, load[-1]) | onset
+        failed = failed_places(drive, angle)
         wings.append([side[:, 1].max(initial=tip) - tip for side in failed.values()])
         if stopped or min(wings[-1]) > GROWN:
             break
@@ -123,12 +125,12 @@ def grow(*, angle: float, dx: float, seed: int, paper: bool, end: float, time_sc
     return {
         "load": np.array(load),
         "wings": np.array(wings),
-        "onset": traction.load(min(drive.sim.events.onset[None], events.time.min(initial=np.inf))),
         "shear": traction.load(shear[0]) if len(shear) else np.array(np.nan),
         "particles": np.array(drive.sim.particles.count),
         "steps": np.array(drive.clock.step),
         "stopped": np.array(stopped),
-        **{f"first_{name}": angles for name, angles in first.items()},
+        **{f"onset_{name}": np.array(onset.get(name, np.nan)) for name in ENDS},
+        **{f"first_{name}": angles for name, angles in first.items() if not paper},
         **{f"failed_{name}": places for name, places in failed_places(drive, angle).items()},
     }
 
