@@ -12,7 +12,7 @@ import taichi as ti
 
 from rsmpm_ti.crack_stress import load_factors, strength_left, strengths
 from rsmpm_ti.material import shaded
-from rsmpm_ti.smoothing import means_at, smooth_stress
+from rsmpm_ti.smoothing import mean_stress, smooth_stress
 from rsmpm_ti.tensors import extreme_principals, principal_angle
 
 
@@ -25,7 +25,7 @@ def tensile_load(sim: ti.template(), p, own):
     load = own
     if ti.static(sim.averaging):
         load = ti.select(shaded(sim, p, principal_angle(sim.particles.sigma[p])), own, 0.0)
-        mean, _ = means_at(sim, p)
+        mean = mean_stress(sim, p)
         if not shaded(sim, p, principal_angle(mean)):
             load = ti.max(load, extreme_principals(mean)[0] / strengths(sim, p)[0])
     return load

@@ -51,15 +51,15 @@ def blur(sim: ti.template(), source: ti.template(), target: ti.template(), axis:
 
 
 @ti.func
-def means_at(sim: ti.template(), p):
-    """Packed mean stress, and mean crack strain, at a particle."""
+def mean_stress(sim: ti.template(), p):
+    """Packed mean stress at a particle."""
     xi = coordinates(sim, p)
     base = sim.grid.base(xi, sim.shape)
     w, _ = weights_at(sim, xi, base)
     total = ti.Vector.zero(float, 6)
     for offset in ti.static(sim.stencil):
         total += tensor_weight(w, offset) * sim.means.sums[base + ti.Vector(offset)]
-    return ti.Vector([total[0], total[1], total[2], total[3]]) / total[4], total[5] / total[4]
+    return ti.Vector([total[0], total[1], total[2], total[3]]) / total[4]
 
 
 @ti.kernel
@@ -121,7 +121,7 @@ def near_hot(sim: ti.template(), p):
 
 
 def smooth_stress(sim) -> None:
-    """Fill sim.means.sums for `means_at`."""
+    """Fill sim.means.sums for `mean_stress` and `read_openings`."""
     clear_means(sim)
     for colour in range(sim.traversal.colours):
         spread_stress(sim, colour)

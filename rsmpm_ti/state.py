@@ -193,10 +193,8 @@ class Means:
             ti.field(ti.i32, ()),
         )
         band = scene.shape.crack_band * scene.domain.dx
-        self.band_share, self.variance = (
-            scene.rock.averaging.band_share(band),
-            scene.rock.averaging.band_variance(band),
-        )
+        self.band_share = scene.rock.averaging.band_share(band)
+        self.variance = scene.rock.averaging.band_variance(band)
         # smallest tensile strength of a particle [Pa], and steps between two looks: the mean over a length cannot
         # change within a quarter of the time that a wave needs for it
         self.weakest = scene.rock.criterion.tensile_strength

@@ -5,7 +5,7 @@ import taichi as ti
 from rsmpm_ti.crack_stress import start_crack, strengths
 from rsmpm_ti.kernels import coordinates
 from rsmpm_ti.material import shaded
-from rsmpm_ti.smoothing import mark_hot, means_at, near_hot, read_openings, smooth_stress
+from rsmpm_ti.smoothing import mark_hot, mean_stress, near_hot, read_openings, smooth_stress
 from rsmpm_ti.state import MOST_FRESH
 from rsmpm_ti.tensors import extreme_principals, principal_angle
 
@@ -17,7 +17,7 @@ def judge(sim: ti.template()):
     for p in particles.mode:
         particles.overload[p] = 0.0
         if sim.means.any_hot[None] == 1 and particles.mode[p] == 0 and near_hot(sim, p):
-            mean, _ = means_at(sim, p)
+            mean = mean_stress(sim, p)
             load = extreme_principals(mean)[0] / strengths(sim, p)[0]
             angle = principal_angle(mean)
             if load >= 1.0 and not shaded(sim, p, angle):

@@ -15,7 +15,7 @@ from rsmpm_ti.laws import Hooke, MohrCoulomb, Rock
 from rsmpm_ti.regions import Box, Difference, Disc, Slit
 from rsmpm_ti.seeding import Jittered, Lattice
 from rsmpm_ti.shape import Gimp, Linear, QuadraticBSpline
-from rsmpm_ti.smoothing import mark_hot, means_at, near_hot, smooth_stress
+from rsmpm_ti.smoothing import mark_hot, mean_stress, near_hot, smooth_stress
 from rsmpm_ti.sorting import sort_particles
 from rsmpm_ti.spec import Body, Domain, Loading, Scene, Schedule
 from rsmpm_ti.state import Simulation
@@ -53,7 +53,7 @@ def block(cells, shape=QuadraticBSpline(), length=2.0 * DX, seeding=Lattice(), r
 @ti.kernel
 def read(sim: ti.template(), mean: ti.types.ndarray(), near: ti.types.ndarray()):
     for p in range(mean.shape[0]):
-        m, _ = means_at(sim, p)
+        m = mean_stress(sim, p)
         for k in ti.static(range(4)):
             mean[p, k] = m[k]
         near[p] = ti.cast(near_hot(sim, p), ti.i32)
