@@ -89,11 +89,16 @@ def pull_seam(*, dx: float, jittered: bool) -> dict:
     return result | {"energy": np.array(rock.after_failure.softening.G_f_I)}
 
 
-def peak(stress: np.ndarray) -> float:
-    """Largest stress [Pa] of a curve up to where it first falls below FALL of the largest so far."""
+def until_broken(stress: np.ndarray) -> int:
+    """Number of rows of a curve up to where it first falls below FALL of the largest stress so far, all if never."""
     most = np.maximum.accumulate(stress)
     broken = np.flatnonzero((stress < FALL * most) & (most > 0.5 * stress.max()))
-    return float(most[broken[0]] if len(broken) else most[-1])
+    return int(broken[0]) if len(broken) else len(stress)
+
+
+def peak(stress: np.ndarray) -> float:
+    """Largest stress [Pa] of a curve before it breaks."""
+    return float(stress[: until_broken(stress)].max())
 
 
 def runs(quick: bool) -> list[Run]:
@@ -136,10 +141,9 @@ def finish(results: dict) -> Outcome:
             style = "-" if law == "lab" else "--"
             colour = f"C{[1.0, 0.5, 0.25].index(float(dx))}"
             label = f"{'directional, G_f' if law == 'lab' else 'paper'} dx {dx} mm"
-            left.plot(
-                1e3 * result["strain"], 1e-6 * result["stress"] * WIDTH / LIGAMENT, style, color=colour, label=label,
-                linewidth=1.0,
-            )  # fmt: skip
+            end = until_broken(result["stress"]) + 1 if law == "paper" else None  # then it rings like a bell
+            strain, stress = 1e3 * result["strain"][:end], 1e-6 * result["stress"][:end] * WIDTH / LIGAMENT
+            left.plot(strain, stress, style, color=colour, label=label, linewidth=1.0)
         left.set(xlabel="axial strain [1e-3]", ylabel="stress on the ligament [MPa]", xlim=(0, 0.17))
         left.legend(fontsize=7)
         for law, marker in (("lab", "o-"), ("paper", "s--")):
