@@ -10,7 +10,14 @@ from rsmpm_ti.verify.case import Row, at_least, at_most, difference, relative
 from rsmpm_ti.verify.catalogue import CASES, MODULES
 from rsmpm_ti.verify.running import run_case
 
-QUICK = [pytest.param(name, marks=pytest.mark.xdist_group(name)) for name, case in CASES.items() if case.quick]
+LONGER = {"manufactured_b"}
+"""Cases of the quick tier that the suite leaves to its own longer tier: a minute, and `manufactured_a` is like it."""
+
+QUICK = [
+    pytest.param(name, marks=[pytest.mark.xdist_group(name), *[pytest.mark.validation] * (name in LONGER)])
+    for name, case in CASES.items()
+    if case.quick
+]
 
 
 @pytest.mark.parametrize("name", QUICK)
