@@ -132,8 +132,8 @@ class Particles:
             # angle of the crack's normal [rad]; opening strains across it and along it, and their largest; slip strain
             self.crack_angle, self.slip = ti.field(real, count), ti.field(real, count)
             self.opening, self.widest = vector(2), vector(2)
-            # energy lost so far [J]; `failed`: the mode by which half of the strength was lost, while `mode` starts
-            # with the loss
+            # energy lost so far [J]; `failed`: the mode by which the particle itself opened or slipped by what costs
+            # half of the strength, while `mode` starts with the loss
             self.lost, self.failed = ti.field(real, count), ti.field(ti.i32, count)
             real_fields += [self.crack_angle, self.slip, self.opening, self.widest, self.lost]
             whole_fields.append(self.failed)

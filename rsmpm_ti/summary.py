@@ -21,8 +21,9 @@ SYMMETRY_LENGTH = 15e-3
 def summarise(scene: Scene, history: np.ndarray, events: EventTable, energy_start: float) -> dict:
     """The physical part of summary.json. Stresses [Pa], lengths [m], angles [degrees]; None where not defined.
 
-    Onset: a particle first begins to lose strength; first failure: one has lost half of it, the first event. Without
-    fracture energy they are one. Modulus and quasi-static measures are of what comes before onset.
+    Onset: a particle first begins to lose strength; first failure, the first event: one has opened or slipped by what
+    costs half of it. Without fracture energy they are one. Modulus and quasi-static measures are of what comes before
+    onset.
     Under confinement axial stresses are whole ones, the pressure included, and strains count from the confined state;
     the modulus is still the slope. The platen imbalance is over what the platens add, the kinetic share over all the
     elastic energy, that of the confinement included.

@@ -2,14 +2,12 @@
 
 import pytest
 
-from rsmpm_ti.study import mean_stress
+from rsmpm_ti.rocks import lab_rock
+from rsmpm_ti.study import flaw_cracks, mean_stress
 from rsmpm_ti.study.mean_stress import ANGLES, HALF, LENGTH, MESH, TENSILE, WIDTH
 
 
 def test_what_is_kept_is_of_the_flaw_and_rock_that_the_runs_have():
-    from rsmpm_ti.rocks import lab_rock
-    from rsmpm_ti.study import flaw_cracks
-
     rock = lab_rock()
     assert (WIDTH, LENGTH, TENSILE) == (
         flaw_cracks.WIDTH,
@@ -37,6 +35,7 @@ def test_mean_of_the_stress_cracks_a_flaw_later_than_its_largest():
 @pytest.mark.validation
 @pytest.mark.parametrize("specimen, angle", [("cube", 45.0), ("disc", 30.0)])
 def test_a_coarser_mesh_finds_the_same(specimen, angle):
+    """Halving the mesh and the pixels changed loads by 0.4 % and angles by half a degree: doubling it, thrice that."""
     pytest.importorskip("gmsh")
     pytest.importorskip("skfem")
     crack, kept = (

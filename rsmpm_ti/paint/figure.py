@@ -31,7 +31,7 @@ class FramePainter:
     kind: "stress" (largest principal stress), "cracks" (failure modes) or "margin" (how near to failure); lower, upper:
     corners of the specimen [m], in 3D those of the face seen along z; stress_limit: end of the colour bar [Pa], the
     same for both signs (needed for "stress"); strain_limit [1] and load_limit [Pa]: ends of the inset's axes, both or
-    there is no inset; softens: "cracks" tints rock that has lost less than half of its strength; backend: "raster" or
+    there is no inset; softens: "cracks" tints rock that has begun to lose strength and not failed; backend: "raster" or
     "ggui"; size: even (width, height) in pixels, by default from the specimen's shape; convention: written on the
     colour bar of "stress"; strain_name, load_name: axes of the inset.
 

@@ -27,7 +27,6 @@ PIXEL = 0.1
 AROUND = 12.0
 """Stress is sampled up to this far from the flaw's ends [mm], several lengths of the mean farther than it cracks."""
 
-
 KEPT = Path(__file__).with_suffix(".json")
 """Results for ANGLES of both specimens, with HALF, WIDTH, LENGTH and TENSILE."""
 
