@@ -4,14 +4,15 @@ Load factors of the stress that decides on failure, with strengths k sigma_t and
 
     tension = sigma_1/(k sigma_t),    shear = ((sigma_1 - sigma_3)/2 + (sigma_1 + sigma_3)/2 sin(phi))/(k c cos(phi)),
 
-the terms of eq. 11 and 12 of the paper, each 1 at failure; margin = 1 - max(tension, shear, 0).
+the terms of eq. 11 and 12 of the paper, each 1 at failure; margin = 1 - max(tension, shear, 0). With averaging, shear
+is of sigma_1 no greater than the tensile strength, as in the check.
 """
 
 import numpy as np
 import taichi as ti
 
 from rsmpm_ti.crack_stress import load_factors, strength_left, strengths
-from rsmpm_ti.material import shaded
+from rsmpm_ti.material import own_shear_load, shaded
 from rsmpm_ti.smoothing import mean_stress, smooth_stress
 from rsmpm_ti.tensors import extreme_principals, principal_angle
 
@@ -53,7 +54,7 @@ def judge_margins(
         if particles.mode[p] == 0:
             load = load_factors(sim, p, extreme_principals(particles.sigma[p]))
             tension = tensile_load(sim, p, load[0] / criterion.tensile_strength)
-            shear = criterion.shear_load(load[0], load[1])
+            shear = own_shear_load(sim, load)
             margin[p] = 1.0 - ti.max(tension, shear, 0.0)
             if ti.max(tension, shear) > 0.0:
                 governs[p] = ti.select(tension >= shear, 1, 2)  # tension is checked first

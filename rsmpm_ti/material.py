@@ -51,13 +51,26 @@ def shaded(sim: ti.template(), p, angle):
 
 
 @ti.func
+def own_shear_load(sim: ti.template(), load):
+    """Load factor in shear, of load factors of a particle's own stress.
+
+    With averaging, tension beyond the cut-off counts as the cut-off: what it does is for the mean stress to judge. It
+    would reach Mohr-Coulomb by itself, and rock on a flaw's face would slip where it ought to open.
+    """
+    most = load[0]
+    if ti.static(sim.averaging):
+        most = ti.min(load[0], sim.rock.criterion.tensile_strength)
+    return sim.rock.criterion.shear_load(most, load[1])
+
+
+@ti.func
 def failure_by_own_stress(sim: ti.template(), p, extremes):
     """Mode by a particle's own stress: 0, 1 or 2. With averaging, tension is for the mean stress unless shaded."""
     load = load_factors(sim, p, extremes)
     mode = sim.rock.criterion.mode(load[0], load[1])
-    if ti.static(sim.rock.averaging.acts):
+    if ti.static(sim.averaging):
         if mode == 1 and not shaded(sim, p, principal_angle(sim.particles.sigma[p])):
-            mode = ti.select(sim.rock.criterion.shear_load(load[0], load[1]) >= 1.0, 2, 0)
+            mode = ti.select(own_shear_load(sim, load) >= 1.0, 2, 0)
     return mode
 
 

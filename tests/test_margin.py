@@ -137,6 +137,19 @@ def test_own_stress_decides_beside_a_crack():
     np.testing.assert_array_equal(across, look(sim).margin)
 
 
+def test_own_tension_beyond_the_cut_off_is_no_shear_with_averaging():
+    """6 MPa reaches Mohr-Coulomb by itself, at UCS/N_phi = 5.55 MPa; 2 MPa is 0.36 of the way."""
+    state = look(averaged())
+    top = int(np.argmin(np.hypot(*(state.x - 12.0 * MM).T)))
+    peak = stressed(
+        lambda x: (np.where((x == state.x[top]).all(axis=1), 6.0, 0.0), 0.0, 0.0, 0.0),
+        after_failure=Directional(softening=SOFT), averaging=Nonlocal(length=LENGTH),
+    )  # fmt: skip
+    state = look(peak)
+    assert state.margin.min() == pytest.approx(1.0 - 2.0 * N_PHI / UCS, rel=1e-12)
+    assert (state.governs == SHEAR).sum() == 1
+
+
 def test_shear_is_for_a_particles_own_stress_with_averaging_too():
     sim = stressed(
         lambda x: (0.0, np.where(x[:, 0] > 12.0 * MM, -0.5 * UCS, 0.0), 0.0, 0.0),

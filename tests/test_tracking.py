@@ -167,6 +167,9 @@ def own_modes(sim: ti.template(), mode: ti.types.ndarray()):
         ((1.9, 0.0, 0.0, 0.0), 0.0, 0),
         ((0.0, -30.0, 0.0, 0.0), NO_SHADE, 2),  # shear is for a particle's own stress: 25.5 MPa
         ((0.0, -30.0, 0.0, 0.0), 0.0, 2),
+        ((6.0, 0.0, 0.0, 0.0), NO_SHADE, 0),  # 5.55 MPa alone reaches Mohr-Coulomb: for the mean to judge, too
+        ((6.0, -22.0, 0.0, 0.0), NO_SHADE, 2),  # beyond 25.52 - 4.599 * 2 MPa it is shear, with the cut-off's tension
+        ((6.0, -15.0, 0.0, 0.0), NO_SHADE, 0),
         ((2.1, -30.0, 0.0, 0.0), NO_SHADE, 2),  # tension is for the mean, shear is not
         ((2.1, -30.0, 0.0, 0.0), 0.0, 1),  # both by its own: tension first, as in the paper
     ],
