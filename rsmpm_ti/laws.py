@@ -160,6 +160,12 @@ class MohrCoulomb:
         return mode
 
     @ti.func
+    def reached(self, sigma_1, sigma_3):
+        """1 where `mode` is not 0, else 0; without branches."""
+        shear = 0.5 * (sigma_1 - sigma_3) + 0.5 * (sigma_1 + sigma_3) * self.sin_phi
+        return ti.select(sigma_1 >= self.tensile_strength, 1, ti.select(shear >= self.c_cos_phi, 1, 0))
+
+    @ti.func
     def shear_load(self, sigma_1, sigma_3):
         """How near to Mohr-Coulomb: 1 on the envelope, less inside."""
         return (0.5 * (sigma_1 - sigma_3) + 0.5 * (sigma_1 + sigma_3) * self.sin_phi) / self.c_cos_phi

@@ -75,6 +75,13 @@ def failure_by_own_stress(sim: ti.template(), p, extremes):
 
 
 @ti.func
+def must_check(sim: ti.template(), p):
+    """1 for a particle that has failed or whose own stress has reached the criterion, else 0; without branches."""
+    load = load_factors(sim, p, extreme_principals(sim.particles.sigma[p]))
+    return ti.select(sim.particles.mode[p] != 0, 1, sim.rock.criterion.reached(load[0], load[1]))
+
+
+@ti.func
 def check_and_release(sim: ti.template(), p, dt, time, slot):
     """The failure check for rock that cracks with a direction, and the stress of what has cracked.
 

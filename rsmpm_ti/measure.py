@@ -7,7 +7,6 @@ import taichi as ti
 
 from rsmpm_ti.crack_stress import spring_energy
 from rsmpm_ti.laws import pressure_energy
-from rsmpm_ti.sorting import cell_key, row_of_key
 from rsmpm_ti.state import SCALARS, Simulation
 
 FIXED = len(SCALARS) + 2
@@ -86,9 +85,9 @@ def _survey(sim: ti.template()):
             for d in ti.static(range(sim.dim)):
                 report.momentum[d][None] += ti.cast(m_p * v[d], ti.f64)
         base = grid.base(xi, sim.shape)
-        if cell_key(sim, base) != particles.key[p]:
+        if grid.key(base) != particles.key[p]:
             report.strays[None] += 1.0
-            depth = xi[0] - sim.shape.shift - row_of_key(sim, particles.key[p])
+            depth = xi[0] - sim.shape.shift - grid.base_of(particles.key[p])[0]
             if depth < -0.5 or depth > 1.5:
                 report.far_strays[None] += 1.0
     for b in range(sim.report.boundary_count):

@@ -2,6 +2,8 @@
 
 import taichi as ti
 
+from rsmpm_ti.wall_nodes import extend, fold
+
 SMALL_MASS = 1e-12
 """Nodes lighter than this share of a full cell hold nothing: their velocity would be round-off."""
 
@@ -24,15 +26,37 @@ def hold(sim: ti.template(), i, v, factor):
     return held
 
 
+@ti.func
+def velocity_of(sim: ti.template(), i, momentum, factor):
+    """v_i = (mv)_i / m_i and boundaries, for momentum that is mapped apart from force."""
+    m = sim.nodes.mass[i]
+    v = ti.Vector.zero(float, sim.dim)
+    if m > SMALL_MASS * sim.density * sim.grid.dx**sim.dim:
+        v = hold(sim, i, 1.0 / m * momentum, factor)
+    return v
+
+
 @ti.kernel
-def momentum_to_velocity(sim: ti.template(), field: ti.template(), factor: float):
-    """v_i = (mv)_i / m_i and boundaries, for momentum that is mapped apart from force (usf, and musl's second map)."""
+def momentum_to_velocity(sim: ti.template(), factor: float):
+    """usf: velocity where momentum was."""
+    fold(sim.nodes.momentum_columns, sim.grid.walls)
     for i in ti.grouped(sim.nodes.mass):
-        m = sim.nodes.mass[i]
-        v = ti.Vector.zero(float, sim.dim)
-        if m > SMALL_MASS * sim.density * sim.grid.dx**sim.dim:
-            v = hold(sim, i, field[i] / m, factor)
-        field[i] = v
+        sim.nodes.v[i] = velocity_of(sim, i, sim.nodes.v[i], factor)
+    extend(sim.nodes.v_columns, sim.grid.walls)
+
+
+@ti.kernel
+def remap_velocity(sim: ti.template(), factor: float):
+    """musl: w becomes velocity, u takes the step's, and mass, v and f are cleared for what the next step maps."""
+    nodes = sim.nodes
+    fold(nodes.w_columns, sim.grid.walls)
+    for i in ti.grouped(nodes.mass):
+        nodes.w[i] = velocity_of(sim, i, nodes.w[i], factor)
+        nodes.u[i] = nodes.v[i]
+        nodes.mass[i] = 0.0
+        nodes.v[i] = ti.Vector.zero(float, sim.dim)
+        nodes.f[i] = ti.Vector.zero(float, sim.dim)
+    extend(nodes.w_columns, sim.grid.walls)
 
 
 @ti.kernel
@@ -42,14 +66,17 @@ def update_nodes(sim: ti.template(), divide: ti.template(), dt: float, factor: f
     `divide`: v still holds momentum. Afterwards f holds the velocity change of the step.
     """
     nodes, ledger = sim.nodes, sim.ledger
+    if ti.static(divide):
+        fold(nodes.momentum_columns, sim.grid.walls)
+    fold(nodes.f_columns, sim.grid.walls)
     for i in ti.grouped(nodes.mass):
         m = nodes.mass[i]
         v, dv = ti.Vector.zero(float, sim.dim), ti.Vector.zero(float, sim.dim)
         if m > SMALL_MASS * sim.density * sim.grid.dx**sim.dim:
-            v_old = nodes.v[i]
+            inverse, v_old = 1.0 / m, nodes.v[i]
             if ti.static(divide):
-                v_old /= m
-            v = v_old + dt * nodes.f[i] / m
+                v_old *= inverse
+            v = v_old + dt * inverse * nodes.f[i]
             if ti.static(sim.heavy):
                 v += dt * ti.Vector(sim.acceleration)
             for b, boundary in ti.static(enumerate(sim.boundaries)):
@@ -64,3 +91,5 @@ def update_nodes(sim: ti.template(), divide: ti.template(), dt: float, factor: f
         nodes.f[i] = dv
         if ti.static(nodes.remap):
             nodes.w[i] = ti.Vector.zero(float, sim.dim)
+    extend(nodes.v_columns, sim.grid.walls)
+    extend(nodes.f_columns, sim.grid.walls)

@@ -5,7 +5,7 @@
 
 import taichi as ti
 
-from rsmpm_ti.kernels import coordinates, weights_at
+from rsmpm_ti.stencil import coordinates, weights_at
 from rsmpm_ti.shape import tensor_gradient, tensor_weight
 from rsmpm_ti.tensors import extreme_principals
 
@@ -25,16 +25,17 @@ def spread_stress(sim: ti.template(), colour: int):
     """sum w_ip V_p sigma_p, sum w_ip V_p and sum w_ip V_p e_p to nodes; e: largest opening strain across the crack."""
     particles = sim.particles
     for t in range(sim.traversal.items):
-        start, stop = sim.traversal.span_of_colour(t, colour)
-        for p in range(start, stop):
-            xi = coordinates(sim, p)
-            base = sim.grid.base(xi, sim.shape)
-            w, _ = weights_at(sim, xi, base)
-            sigma, V_p = particles.sigma[p], particles.volume[p] * particles.J[p]
-            carried = V_p * ti.Vector([sigma[0], sigma[1], sigma[2], sigma[3], 1.0, particles.widest[p][0]])
-            for offset in ti.static(sim.stencil):
-                i = base + ti.Vector(offset)
-                sim.traversal.add(sim.means.sums, i, tensor_weight(w, offset) * carried)
+        if t % sim.traversal.stride == 0:
+            start, stop, _ = sim.traversal.span(t, colour)
+            for p in range(start, stop):
+                xi = coordinates(sim, p)
+                base = sim.grid.base(xi, sim.shape)
+                w, _ = weights_at(sim, xi, base)
+                sigma, V_p = particles.sigma[p], particles.volume[p] * particles.J[p]
+                carried = V_p * ti.Vector([sigma[0], sigma[1], sigma[2], sigma[3], 1.0, particles.widest[p][0]])
+                for offset in ti.static(sim.stencil):
+                    i = base + ti.Vector(offset)
+                    sim.traversal.add(sim.means.sums, i, tensor_weight(w, offset) * carried)
 
 
 @ti.kernel

@@ -6,29 +6,11 @@ import taichi as ti
 from rsmpm_ti.state import Simulation
 
 
-@ti.func
-def cell_key(sim: ti.template(), base):
-    """Row-major index of a base node: the sort key of cell order."""
-    key = base[0]
-    for d in ti.static(range(1, sim.dim)):
-        key = key * sim.grid.nodes[d] + base[d]
-    return key
-
-
-@ti.func
-def row_of_key(sim: ti.template(), key):
-    """Row along the first axis, which stripes are made of."""
-    row = key
-    for d in ti.static(range(1, sim.dim)):
-        row //= sim.grid.nodes[sim.dim - d]
-    return row
-
-
 @ti.kernel
 def cell_keys(sim: ti.template()):
     particles, grid = sim.particles, sim.grid
     for p in particles.key:
-        particles.key[p] = cell_key(sim, grid.base(grid.local(particles.reference[p] + particles.u[p]), sim.shape))
+        particles.key[p] = grid.key(grid.base(grid.local(particles.reference[p] + particles.u[p]), sim.shape))
 
 
 @ti.kernel

@@ -7,14 +7,12 @@ import taichi as ti
 
 from rsmpm_ti.confinement import confined_volume_ratio
 from rsmpm_ti.errors import SceneError
+from rsmpm_ti.grid import Grid
 from rsmpm_ti.seeding import Seeds
-from rsmpm_ti.shape import offsets
+from rsmpm_ti.shape import offsets, rows
 from rsmpm_ti.spec import Affine, Scene
 from rsmpm_ti.tensors import PACKED_LENGTH
 from rsmpm_ti.traversal import Chunks, Stripes
-
-MARGIN = 3
-"""Cells of empty grid around the domain, so that no stencil leaves the arrays."""
 
 MOST_FRESH = 4096
 """Most particles that crack by mean stress in one step; the others wait for the next."""
@@ -25,58 +23,23 @@ NO_SHADE = 100.0
 BLOCK = 8
 """Cells per axis of a sparse block."""
 
-FAR = -(10**6)
-"""Wall index of an axis without a wall."""
-
-
-@ti.data_oriented
-class Grid:
-    """Geometry of the background grid: node i sits at origin + i dx [m]."""
-
-    def __init__(self, scene: Scene):
-        domain, dim = scene.domain, scene.dim
-        self.dim, self.dx, self.inv_dx = dim, domain.dx, 1.0 / domain.dx
-        cells = np.ceil((np.array(domain.upper) - np.array(domain.lower)) / domain.dx - 1e-6).astype(int)
-        self.nodes = tuple(int(c) + 2 * MARGIN + 1 for c in cells)
-        self.origin = tuple(float(a) - MARGIN * domain.dx for a in domain.lower)
-        lower, upper = [FAR] * dim, [-FAR] * dim
-        for boundary in scene.loading.boundaries:
-            row = round((boundary.position - self.origin[boundary.axis]) / domain.dx)
-            if boundary.side == "lower":
-                lower[boundary.axis] = max(lower[boundary.axis], row)
-            else:
-                upper[boundary.axis] = min(upper[boundary.axis], row)
-        self.wall_lower, self.wall_upper = tuple(lower), tuple(upper)
-
-    @ti.func
-    def local(self, x):
-        """Grid coordinates x/dx from the first node."""
-        return (x - ti.Vector(self.origin)) * self.inv_dx
-
-    @ti.func
-    def base(self, xi, shape: ti.template()):
-        """First node of the stencil; clamped, so that a lost or NaN particle never writes out of bounds."""
-        base = ti.floor(xi - shape.shift).cast(int)
-        return ti.max(0, ti.min(base, ti.Vector(self.nodes) - shape.width))
-
-    @ti.func
-    def position(self, i):
-        return ti.Vector(self.origin) + i * self.dx
-
 
 @ti.data_oriented
 class Nodes:
     """Node fields, interleaved in memory. `sparse` places them under pointer blocks.
 
     v holds momentum until the nodes are updated, then velocity; f holds force, then the velocity change of the step;
-    w (musl only) the momentum, then velocity, mapped back from moved particles.
+    w and u (musl only) the momentum, then velocity, mapped back from moved particles, and the velocity v of the step,
+    by which particles move, while v takes the next step's momentum.
     """
 
     def __init__(self, scene: Scene, grid: Grid, real, sparse: bool):
         self.mass = ti.field(real)
         self.v, self.f = ti.Vector.field(grid.dim, real), ti.Vector.field(grid.dim, real)
         self.remap = scene.order == "musl"
-        self.w = ti.Vector.field(grid.dim, real) if self.remap else self.v
+        self.w = self.u = self.v
+        if self.remap:
+            self.w, self.u = ti.Vector.field(grid.dim, real), ti.Vector.field(grid.dim, real)
         axes = (ti.ij, ti.ijk)[grid.dim - 2]
         self.blocks = None
         if sparse:
@@ -85,7 +48,11 @@ class Nodes:
             parent = self.blocks.dense(axes, (BLOCK,) * grid.dim)
         else:
             parent = ti.root.dense(axes, grid.nodes)
-        parent.place(self.mass, self.v, self.f, *((self.w,) if self.remap else ()))
+        parent.place(self.mass, self.v, self.f, *((self.w, self.u) if self.remap else ()))
+
+        # the same fields by component
+        self.v_columns, self.f_columns, self.w_columns = (_components(field) for field in (self.v, self.f, self.w))
+        self.momentum_columns = (self.mass, *self.v_columns)
 
     def forget_empty(self) -> None:
         """Deactivate every block; the next P2G activates those that hold material."""
@@ -145,7 +112,8 @@ class Particles:
             real_fields += [self.shade_angle, self.mean_opening, self.worn]
         self.real_components = tuple(c for field in real_fields for c in _components(field))
         self.whole_components = tuple(whole_fields)
-        self.key, self.order = ti.field(ti.i32, count), ti.field(ti.i32, count)
+        # cell key at the last sort and now, and room for sorting
+        self.key, self.base, self.order = (ti.field(ti.i32, count) for _ in range(3))
         self.scratch = ti.field(real, count)
 
 
@@ -259,6 +227,7 @@ class Simulation:
         self.rock, self.shape, self.transfer = scene.rock, scene.shape, scene.transfer
         self.boundaries = scene.loading.boundaries
         self.stencil = offsets(scene.shape, scene.dim)
+        self.rows = rows(scene.shape, scene.dim)
         self.size = len(self.stencil)  # nodes of a stencil
         self.band = scene.shape.crack_band * scene.domain.dx
         self.confinement = scene.loading.confinement

@@ -2,15 +2,22 @@
 
 import math
 
+from typing import NamedTuple
+
 from rsmpm_ti.kernels import g2p, g2p_remap, p2g
-from rsmpm_ti.node_update import clear_nodes, momentum_to_velocity, update_nodes
+from rsmpm_ti.node_update import clear_nodes, momentum_to_velocity, remap_velocity, update_nodes
 from rsmpm_ti.state import Simulation
 from rsmpm_ti.tracking import track_cracks
 
-VELOCITY_POSITION = (True, True, False)
-POSITION_STRESS = (False, True, True)
-STRESS = (False, False, True)
-EVERYTHING = (True, True, True)
+
+class Pass(NamedTuple):
+    """What one pass over the particles does: nodes to particles, then back to nodes."""
+
+    velocity: bool = False
+    position: bool = False
+    stress: bool = False
+    momentum: bool = False
+    force: bool = False
 
 
 def scatter_all(sim: Simulation, momentum: bool, force: bool, time: float) -> None:
@@ -18,37 +25,52 @@ def scatter_all(sim: Simulation, momentum: bool, force: bool, time: float) -> No
         p2g(sim, momentum, force, colour, time)
 
 
-def musl(sim: Simulation, dt: float, time: float, factor: float) -> None:
-    """Stress last, from velocities mapped back from moved particles.  Sulsky, Zhou & Schreyer (1995)."""
-    clear_nodes(sim)
-    scatter_all(sim, momentum=True, force=True, time=time - dt)
-    update_nodes(sim, True, dt, factor)
+def gather_all(sim: Simulation, what: Pass, dt: float, time: float) -> None:
     for colour in range(sim.traversal.colours):
-        g2p_remap(sim, colour)
-    momentum_to_velocity(sim, sim.nodes.w, factor)
-    g2p(sim, POSITION_STRESS, dt, time)
+        g2p(sim, what, colour, dt, time)
 
 
-def usf(sim: Simulation, dt: float, time: float, factor: float) -> None:
+def musl(sim: Simulation, dt: float, start: float, factors: list[float]) -> None:
+    """Stress last, from velocities mapped back from moved particles.  Sulsky, Zhou & Schreyer (1995).
+
+    The pass that ends a step begins the next: particles go to the nodes while they are at hand.
+    """
+    clear_nodes(sim)
+    scatter_all(sim, momentum=True, force=True, time=start)
+    for step, factor in enumerate(factors, 1):
+        update_nodes(sim, True, dt, factor)
+        for colour in range(sim.traversal.colours):
+            g2p_remap(sim, colour)
+        remap_velocity(sim, factor)
+        # after the last step it is for nothing, and cheaper than compiling a pass that does not; but with averaging,
+        # where every other step may be the last, that is what is compiled
+        more = step < len(factors) or not sim.averaging
+        gather_all(sim, Pass(position=True, stress=True, momentum=more, force=more), dt, start + step * dt)
+
+
+def usf(sim: Simulation, dt: float, start: float, factors: list[float]) -> None:
     """Stress first.  Bardenhagen (2002), J. Comput. Phys. 180:383."""
-    clear_nodes(sim)
-    scatter_all(sim, momentum=True, force=False, time=time - dt)
-    momentum_to_velocity(sim, sim.nodes.v, factor)
-    g2p(sim, STRESS, dt, time)
-    scatter_all(sim, momentum=False, force=True, time=time - dt)
-    update_nodes(sim, False, dt, factor)
-    g2p(sim, VELOCITY_POSITION, dt, time)
+    for step, factor in enumerate(factors, 1):
+        time = start + step * dt
+        clear_nodes(sim)
+        scatter_all(sim, momentum=True, force=False, time=time - dt)
+        momentum_to_velocity(sim, factor)
+        gather_all(sim, Pass(stress=True, force=True), dt, time)
+        update_nodes(sim, False, dt, factor)
+        gather_all(sim, Pass(velocity=True, position=True), dt, time)
 
 
-def usl(sim: Simulation, dt: float, time: float, factor: float) -> None:
+def usl(sim: Simulation, dt: float, start: float, factors: list[float]) -> None:
     """Stress last, from the updated node velocities; dissipates.  Sulsky, Chen & Schreyer (1994)."""
-    clear_nodes(sim)
-    scatter_all(sim, momentum=True, force=True, time=time - dt)
-    update_nodes(sim, True, dt, factor)
-    g2p(sim, EVERYTHING, dt, time)
+    for step, factor in enumerate(factors, 1):
+        clear_nodes(sim)
+        scatter_all(sim, momentum=True, force=True, time=start + (step - 1) * dt)
+        update_nodes(sim, True, dt, factor)
+        gather_all(sim, Pass(velocity=True, position=True, stress=True), dt, start + step * dt)
 
 
 ORDERS = {"musl": musl, "usf": usf, "usl": usl}
+"""Each takes steps of dt from a time [s], one for every factor on the platens' speed."""
 
 
 class Clock:
@@ -71,10 +93,16 @@ class Clock:
         return self.step >= self.total
 
     def advance(self, steps: int) -> None:
-        for _ in range(min(steps, self.total - self.step)):
-            factor = self.factor(self.time + 0.5 * self.dt)
-            self._pass_list(self._sim, self.dt, self.time + self.dt, factor)
-            if self._sim.averaging and self.step % self._sim.means.interval == 0:
-                track_cracks(self._sim, self.time + self.dt)
-            self.strain += factor * self.strain_rate * self.dt
-            self.step += 1
+        """Take steps, fewer if the run ends before; with averaging, a look for cracks every `interval` steps."""
+        last = min(self.step + steps, self.total)
+        while self.step < last:
+            chunk = last - self.step
+            if self._sim.averaging:  # a look comes after steps 1, 1 + interval, 1 + 2 interval ...
+                interval = self._sim.means.interval
+                chunk = min(chunk, (-self.step) % interval + 1)
+            factors = [self.factor((self.step + k + 0.5) * self.dt) for k in range(chunk)]
+            self._pass_list(self._sim, self.dt, self.time, factors)
+            self.strain += sum(factors) * self.strain_rate * self.dt
+            self.step += chunk
+            if self._sim.averaging and (self.step - 1) % self._sim.means.interval == 0:
+                track_cracks(self._sim, self.time)

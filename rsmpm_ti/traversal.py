@@ -20,28 +20,23 @@ class Stripes:
     """CPU: stripes of ROWS rows along the first axis, even ones first, then odd ones."""
 
     colours = 2
+    stride = SPREAD  # only every so many iterations of a loop have work
 
     def __init__(self, rows: int):
         self.count = -(-rows // ROWS)
-        self.all_items = self.count * SPREAD  # loop iterations over all stripes
-        self.items = (self.count // 2 + 1) * SPREAD  # and over those of one colour
+        self.items = (self.count // 2 + 1) * SPREAD  # loop iterations over the stripes of one colour
         self.start = ti.field(ti.i32, self.count + 1)  # first particle of each stripe
 
     @ti.func
-    def span(self, t):
-        """Particles [start, stop) of loop iteration t over all stripes, and the stripe as slot in ledgers."""
-        start, stop, stripe = 0, 0, t // SPREAD
-        if t % SPREAD == 0:
-            start, stop = self.start[stripe], self.start[stripe + 1]
-        return start, stop, stripe
-
-    @ti.func
-    def span_of_colour(self, t, colour):
-        """Particles [start, stop) of loop iteration t over the stripes of one colour."""
-        start, stop, stripe = 0, 0, 2 * (t // SPREAD) + colour
-        if t % SPREAD == 0 and stripe < self.count:
-            start, stop = self.start[stripe], self.start[stripe + 1]
-        return start, stop
+    def span(self, t, colour):
+        """Particles [start, stop) of loop iteration t over the stripes of one colour, t a multiple of `stride`, and
+        the stripe as slot in ledgers."""
+        stripe = 2 * (t // SPREAD) + colour
+        slot = ti.min(stripe, self.count - 1)
+        start, stop = self.start[slot], self.start[slot + 1]
+        if stripe >= self.count:
+            stop = start
+        return start, stop, slot
 
     @ti.func
     def add(self, field: ti.template(), i, value):
@@ -57,19 +52,16 @@ class Chunks:
     """GPU: every thread takes a few particles that are neighbours in cell order."""
 
     colours = 1
+    stride = 1
     size = 4
 
     def __init__(self, particle_count: int):
         self.particle_count = particle_count
-        self.items = self.all_items = self.count = -(-particle_count // self.size)
+        self.items = self.count = -(-particle_count // self.size)
 
     @ti.func
-    def span(self, t):
+    def span(self, t, colour):
         return t * self.size, ti.min((t + 1) * self.size, self.particle_count), t
-
-    @ti.func
-    def span_of_colour(self, t, colour):
-        return t * self.size, ti.min((t + 1) * self.size, self.particle_count)
 
     @ti.func
     def add(self, field: ti.template(), i, value):

@@ -6,7 +6,8 @@ import numpy as np
 from exact import lame, shape_function
 
 from rsmpm_ti.spec import Scene
-from rsmpm_ti.state import MARGIN, Simulation
+from rsmpm_ti.grid import MARGIN
+from rsmpm_ti.state import Simulation
 from rsmpm_ti.transfer import Apic, PicFlip
 
 PLACES = ((0, 0), (1, 1), (2, 2), (0, 1), (1, 2), (2, 0))

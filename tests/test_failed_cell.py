@@ -75,7 +75,7 @@ def test_failed_cell_follows_its_pressure_law_closing_opening_and_closing_again(
     dt, expected, J, pressures = scene.dt, PRESSURES[type(law).__name__], 1.0, []
     path = [1.0] * 60 + [-1.0] * 120 + [1.0] * 60  # close, open beyond the start, close to the start again
     for k, factor in enumerate(path):
-        ORDERS["musl"](sim, dt, k * dt, factor)
+        ORDERS["musl"](sim, dt, k * dt, [factor])
         J *= 1.0 - factor * dt / 1e-3  # v is linear over the cell: L_yy = -factor x speed/height, exactly
         sigma = sim.particles.sigma.to_numpy()
         pressures.append(-sigma[0, 1])

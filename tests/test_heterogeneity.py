@@ -212,10 +212,9 @@ def test_strength_stays_with_its_particle_through_sorting(taichi_f64, length):
 
 def test_particle_fails_at_its_own_strength_and_no_other(taichi_f64):
     """Stress is given, not computed: uniaxial tension and compression at 1 % below and above each particle's own."""
-    from rsmpm_ti.kernels import g2p
     from rsmpm_ti.sorting import sort_particles
     from rsmpm_ti.state import Simulation
-    from rsmpm_ti.stepper import STRESS
+    from rsmpm_ti.stepper import Pass, gather_all
 
     scene = pulled(VARIED)
     k, ucs = strengths_by_seed(scene), scene.rock.criterion.ucs
@@ -226,7 +225,7 @@ def test_particle_fails_at_its_own_strength_and_no_other(taichi_f64):
     sigma = np.zeros((128, 4))
     sigma[:, 1] = axial
     sim.particles.sigma.from_numpy(sigma[sim.particles.id.to_numpy()])
-    g2p(sim, STRESS, 1e-12, 0.0)  # nodes are at rest: the stress stays and is checked
+    gather_all(sim, Pass(stress=True), 1e-12, 0.0)  # nodes are at rest: the stress stays and is checked
     order = np.argsort(sim.particles.id.to_numpy())
     expected = np.where(share > 1.0, np.where(np.arange(128) < 64, 1, 2), 0)
     assert np.array_equal(sim.particles.mode.to_numpy()[order], expected)

@@ -18,7 +18,8 @@ from rsmpm_ti.regions import Box
 from rsmpm_ti.smoothing import mark_hot, smooth_stress
 from rsmpm_ti.sorting import sort_particles
 from rsmpm_ti.spec import Body, Domain, Loading, Scene, Schedule
-from rsmpm_ti.state import NO_SHADE, Grid, Means, Simulation
+from rsmpm_ti.grid import Grid
+from rsmpm_ti.state import NO_SHADE, Means, Simulation
 from rsmpm_ti.tensors import extreme_principals
 from rsmpm_ti.tracking import judge, track_cracks
 
