@@ -5,8 +5,8 @@
 
 import taichi as ti
 
-from rsmpm_ti.stencil import coordinates, weights_at
 from rsmpm_ti.shape import tensor_gradient, tensor_weight
+from rsmpm_ti.stencil import coordinates, weights_at
 from rsmpm_ti.tensors import extreme_principals
 
 

@@ -7,7 +7,6 @@ import taichi as ti
 
 from rsmpm_ti.shape import fold_at_walls, row_gradient, row_weight
 
-
 MOST_RUN = 63
 """Most particles of a run: 2^n - 1. A loop over `(end - first) & MOST_RUN` of them tells LLVM that it is short; else it
 interleaves four copies of its vector instructions, and runs of fewer than 16 particles get none of them."""

@@ -1,7 +1,6 @@
 """Time stepping: musl, usf and usl as lists of passes, and the clock that counts them."""
 
 import math
-
 from typing import NamedTuple
 
 from rsmpm_ti.kernels import g2p, g2p_remap, p2g

@@ -3,10 +3,10 @@
 import taichi as ti
 
 from rsmpm_ti.crack_stress import start_crack, strengths
-from rsmpm_ti.stencil import coordinates
 from rsmpm_ti.material import shaded
 from rsmpm_ti.smoothing import mark_hot, mean_stress, near_hot, read_openings, smooth_stress
 from rsmpm_ti.state import MOST_FRESH
+from rsmpm_ti.stencil import coordinates
 from rsmpm_ti.tensors import extreme_principals, principal_angle
 
 

@@ -5,8 +5,8 @@ from types import SimpleNamespace
 import numpy as np
 from exact import lame, shape_function
 
-from rsmpm_ti.spec import Scene
 from rsmpm_ti.grid import MARGIN
+from rsmpm_ti.spec import Scene
 from rsmpm_ti.state import Simulation
 from rsmpm_ti.transfer import Apic, PicFlip
 

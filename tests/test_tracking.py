@@ -11,6 +11,7 @@ import taichi as ti
 from rsmpm_ti import tracking
 from rsmpm_ti.averaging import Nonlocal
 from rsmpm_ti.directional import Directional
+from rsmpm_ti.grid import Grid
 from rsmpm_ti.heterogeneity import Uniform, Weibull
 from rsmpm_ti.laws import Hooke, MohrCoulomb, NoViscosity, Rock
 from rsmpm_ti.material import failure_by_own_stress
@@ -18,7 +19,6 @@ from rsmpm_ti.regions import Box
 from rsmpm_ti.smoothing import mark_hot, smooth_stress
 from rsmpm_ti.sorting import sort_particles
 from rsmpm_ti.spec import Body, Domain, Loading, Scene, Schedule
-from rsmpm_ti.grid import Grid
 from rsmpm_ti.state import NO_SHADE, Means, Simulation
 from rsmpm_ti.tensors import extreme_principals
 from rsmpm_ti.tracking import judge, track_cracks
