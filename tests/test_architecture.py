@@ -32,7 +32,7 @@ VERIFY_LAYERS = """
 STUDY_LAYERS = """
     runs flaw_cracks turned grid_independence fracture_energy shear_band gmts mean_stress flaw_angle catalogue __main__
 """.split()
-BENCH_LAYERS = "settings yardstick speed measures front error __main__".split()
+BENCH_LAYERS = "settings yardstick workers speed passes scaling start measures front error __main__".split()
 """The same within the packages cracks, verify, study and bench, which see every layer above their own name."""
 
 ROOMS = {

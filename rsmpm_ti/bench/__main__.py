@@ -1,20 +1,36 @@
-"""python -m rsmpm_ti.bench speed | error."""
+"""python -m rsmpm_ti.bench speed | passes | scaling | memory | start | error."""
 
 import argparse
+import os
 import sys
 from pathlib import Path
 
-from rsmpm_ti.bench.settings import CELLS
+from rsmpm_ti.bench.settings import CELLS, SHAPES
 
 
 def parser() -> argparse.ArgumentParser:
     p = argparse.ArgumentParser(prog="python -m rsmpm_ti.bench", description="Measure speed, alone and against error.")
     what = p.add_subparsers(dest="what", required=True)
-    speed = what.add_parser("speed", help="ratios to a naive implementation, interleaved in one run")
-    speed.add_argument("--threads", type=int, default=1)
+    speed = what.add_parser("speed", help="ratios to a naive twin and to one in C++, interleaved in one run")
+    speed.add_argument("--threads", type=int, default=os.cpu_count() or 1)
     speed.add_argument("--rounds", type=int, default=7)
     speed.add_argument("--steps", type=int, default=40)
-    speed.add_argument("--order", choices=("musl", "usf"), default="musl")
+    passes = what.add_parser("passes", help="time of each kernel of a step")
+    passes.add_argument("--shape", choices=SHAPES, default="bspline")
+    passes.add_argument("--order", choices=("musl", "usf"), default="musl")
+    passes.add_argument("--rounds", type=int, default=7)
+    passes.add_argument("--steps", type=int, default=40)
+    scaling = what.add_parser("scaling", help="cost per particle-step from 20 000 to 5 million particles")
+    scaling.add_argument("--threads", type=int, default=os.cpu_count() or 1)
+    scaling.add_argument("--rounds", type=int, default=3)
+    scaling.add_argument("--shape", choices=SHAPES, default="bspline")
+    memory = what.add_parser("memory", help="bytes per particle")
+    memory.add_argument("scenes", nargs="*", default=["intact", "cube", "disc", "cube_lab"])
+    start = what.add_parser("start", help="seconds until the first step, with and without kept kernels")
+    start.add_argument("scene", nargs="?", default="cube")
+    start.add_argument("--full", action="store_true", help="not with the scene's --quick settings")
+    start.add_argument("--threads", type=int, default=os.cpu_count() or 1)
+    start.add_argument("--rounds", type=int, default=3)
     error = what.add_parser("error", help="sweep numerical settings: error against wall time")
     error.add_argument("cases", nargs="*", choices=(*CELLS, []), metavar="CASE", help=f"of {', '.join(CELLS)}; all")
     error.add_argument("--quick", action="store_true", help="leave the finest grids out")
@@ -25,15 +41,34 @@ def parser() -> argparse.ArgumentParser:
 
 def main(arguments: list[str] | None = None) -> int:
     options = parser().parse_args(arguments)
+    print(_measure(options))
+    return 0
+
+
+def _measure(options: argparse.Namespace) -> str:
     if options.what == "speed":
         from rsmpm_ti.bench.speed import speed
 
-        print(speed(options.threads, options.rounds, options.steps, options.order))
-    else:
-        from rsmpm_ti.bench.error import error
+        return speed(options.threads, options.rounds, options.steps)
+    if options.what == "passes":
+        from rsmpm_ti.bench.passes import passes
 
-        print(error(options.cases, not options.quick, options.jobs, Path(options.out)))
-    return 0
+        return passes(options.shape, options.order, options.rounds, options.steps)
+    if options.what == "scaling":
+        from rsmpm_ti.bench.scaling import scaling
+
+        return scaling(options.rounds, options.threads, options.shape)
+    if options.what == "memory":
+        from rsmpm_ti.bench.scaling import memory
+
+        return memory(tuple(options.scenes))
+    if options.what == "start":
+        from rsmpm_ti.bench.start import start
+
+        return start(options.scene, not options.full, options.threads, options.rounds)
+    from rsmpm_ti.bench.error import error
+
+    return error(options.cases, not options.quick, options.jobs, Path(options.out))
 
 
 if __name__ == "__main__":

@@ -1,66 +1,64 @@
-"""`bench speed`: this code against the yardstick, interleaved in one run, as ratios."""
+"""`bench speed`: this code against a naive twin and a hand-written one, interleaved in one run, as ratios."""
 
 import statistics
-import time
 from dataclasses import replace
 
 from rsmpm_ti.bench.settings import SHAPES
-from rsmpm_ti.library import load_scene
-from rsmpm_ti.run import start_taichi
-from rsmpm_ti.seeding import Lattice
+from rsmpm_ti.bench.workers import WIDTHS, Runner, workers
+
+FINE = 0.25e-3
+"""Cell size [m] at which there are 320 000 particles."""
 
 
-def solver(shape: str, order: str):
-    """The intact cube in its elastic phase as (particles, step function): 80 000 particles, failure check on."""
-    from rsmpm_ti.sorting import sort_particles
-    from rsmpm_ti.state import Simulation
-    from rsmpm_ti.stepper import Clock
-
-    scene = load_scene("intact", time_scale=1.0, strain_end=1.5e-3)
-    bodies = (replace(scene.bodies[0], seeding=Lattice()),)
-    scene = replace(scene, shape=SHAPES[shape](2), order=order, bodies=bodies)
-    sim = Simulation(scene, scene.particles())
-    sort_particles(sim)
-    clock = Clock(sim)
-    return sim.particles.count, clock.advance
-
-
-def yardstick():
-    from rsmpm_ti.bench.yardstick import Naive
-
-    naive = Naive()
-
-    def advance(steps: int) -> None:
-        for _ in range(steps):
-            naive.step()
-
-    return naive.count, advance
+def runners(threads: int, twins: bool) -> list[Runner]:
+    """What is timed in each round: the twins, every shape function, and one change at a time."""
+    out = [Runner("naive", shape) for shape in WIDTHS]
+    out += [Runner("c++", shape) for shape in WIDTHS if twins]
+    out += [Runner("solver", shape) for shape in SHAPES]
+    out += [Runner("solver", shape, order="usf") for shape in WIDTHS]
+    out += [Runner("solver", shape, precision="f32") for shape in SHAPES]
+    out += [Runner("solver", shape, dx=FINE) for shape in WIDTHS]
+    if threads > 1:
+        out += [Runner("solver", shape, threads=threads) for shape in SHAPES]
+        out += [Runner("solver", shape, threads=threads, dx=FINE) for shape in WIDTHS]
+    return out
 
 
-def speed(threads: int, rounds: int, steps: int, order: str) -> str:
-    """Table of M particle-steps/s (min, median, max over rounds) and the ratio to the yardstick, round by round."""
-    import taichi as ti
-
-    start_taichi("f64", "cpu", threads)
-    runners = {"yardstick, linear, usl": yardstick()}
-    runners |= {f"rsmpm_ti, {shape}, {order}": solver(shape, order) for shape in SHAPES}
-    for _, advance in runners.values():
-        advance(3)
-    ti.sync()
-    rates: dict[str, list[float]] = {name: [] for name in runners}
+def timed(plan: list[Runner], pool, rounds: int, steps: int) -> dict[Runner, list[float]]:
+    """M particle-steps/s of each in each round; a few steps before, which compile, are not counted."""
+    for runner in plan:
+        pool.rate(runner, 3)
+    rates: dict[Runner, list[float]] = {runner: [] for runner in plan}
     for _ in range(rounds):
-        for name, (count, advance) in runners.items():
-            start = time.perf_counter()
-            advance(steps)
-            ti.sync()
-            rates[name].append(count * steps / (time.perf_counter() - start) / 1e6)
-    base = rates["yardstick, linear, usl"]
-    lines = [f"{threads} thread(s), f64, {rounds} rounds of {steps} steps, 80 000 particles, failure check on"]
-    lines.append(f"{'':<28}{'M particle-steps/s':>24}{'ratio to yardstick':>24}")
-    for name, values in rates.items():
-        ratios = [a / b for a, b in zip(values, base, strict=True)]
-        lines.append(f"{name:<28}{_spread(values):>24}{_spread(ratios):>24}")
+        for runner in plan:
+            rates[runner].append(pool.rate(runner, steps))
+    return rates
+
+
+def speed(threads: int, rounds: int, steps: int) -> str:
+    """Table of M particle-steps/s and of ratios, round by round: min / median / max."""
+    with workers() as (pool, twins):
+        rates = timed(runners(threads, twins), pool, rounds, steps)
+    lines = [
+        f"{rounds} rounds of {steps} steps in turn, 80 000 particles unless named, failure check on, f64 unless named"
+    ]
+    lines.append(f"{'':<36}{'M particle-steps/s':>22}{'ratio to naive':>22}{'ratio to C++':>22}")
+    for runner, values in rates.items():
+        shape = runner.shape if runner.shape in WIDTHS else "bspline"  # uGIMP has as many nodes
+        columns = [_spread(values)]
+        for code in ("naive", "c++"):
+            base = rates.get(Runner(code, shape))
+            columns.append(_ratios(values, base) if base else "no g++")
+        lines.append(f"{runner.label:<36}" + "".join(f"{column:>22}" for column in columns))
+    for runner, values in rates.items():
+        if runner.threads > 1:
+            single = rates[replace(runner, threads=1)]
+            lines.append(f"{runner.label:<36}over 1 thread: {_ratios(values, single)}")
     return "\n".join(lines)
+
+
+def _ratios(values: list[float], base: list[float]) -> str:
+    return _spread([a / b for a, b in zip(values, base, strict=True)])
 
 
 def _spread(values: list[float]) -> str:
