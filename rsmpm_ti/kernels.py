@@ -11,6 +11,7 @@ pass.
 import taichi as ti
 
 from rsmpm_ti.material import check_and_release, check_failure, must_check, update_stress
+from rsmpm_ti.node_update import new_velocity, velocity_after_remap
 from rsmpm_ti.shape import row_gradient, row_weight, tensor_weight
 from rsmpm_ti.stencil import (
     MOST_RUN,
@@ -122,6 +123,7 @@ def particles_to_nodes(sim: ti.template(), start, stop, what: ti.template(), tim
 @ti.kernel
 def p2g(sim: ti.template(), momentum: ti.template(), force: ti.template(), colour: int, time: ti.f64):
     """Particles of one colour to nodes: mass and momentum, force, or both in one pass."""
+    ti.loop_config(serialize=sim.traversal.serial)
     for t in range(sim.traversal.items):
         if t % sim.traversal.stride == 0:
             first, stop, _ = sim.traversal.span(t, colour)
@@ -150,10 +152,11 @@ def velocity_to_particle(sim: ti.template(), p, w, xi, base, v_i: ti.template(),
         particles.C[p] = B
 
 
-@ti.kernel
-def g2p_remap(sim: ti.template(), colour: int):
+@ti.func
+def remap_pass(sim: ti.template(), colour):
     """musl: new velocities for particles, and their momentum back to the nodes with the same weights, in one pass."""
     particles, nodes = sim.particles, sim.nodes
+    ti.loop_config(serialize=sim.traversal.serial)
     for t in range(sim.traversal.items):
         if t % sim.traversal.stride == 0:
             first, stop, _ = sim.traversal.span(t, colour)
@@ -242,13 +245,14 @@ def new_stress(sim: ti.template(), start, stop, slot, dt, time):
                     check_failure(sim, p, time, slot)
 
 
-@ti.kernel
-def g2p(sim: ti.template(), what: ti.template(), colour: int, dt: float, time: ti.f64):
+@ti.func
+def particle_pass(sim: ti.template(), what: ti.template(), colour, dt, time):
     """Nodes to particles of one colour, and back to nodes if asked while they are at hand; `time` at the step's end.
 
     `what.force` alone: the force of the new stress, at the weights of the step's start; with `what.momentum`, all that
     the next step needs, at the particles' new places.
     """
+    ti.loop_config(serialize=sim.traversal.serial)
     for t in range(sim.traversal.items):
         if t % sim.traversal.stride == 0:
             first, stop, slot = sim.traversal.span(t, colour)
@@ -263,3 +267,22 @@ def g2p(sim: ti.template(), what: ti.template(), colour: int, dt: float, time: t
                 elif ti.static(what.force):
                     particles_to_nodes(sim, first, last, (False, False, True), time - dt)
                 first = last
+
+
+@ti.kernel
+def g2p_remap(sim: ti.template(), colour: int):
+    remap_pass(sim, colour)
+
+
+@ti.kernel
+def g2p(sim: ti.template(), what: ti.template(), colour: int, dt: float, time: ti.f64):
+    particle_pass(sim, what, colour, dt, time)
+
+
+@ti.kernel
+def musl_step(sim: ti.template(), what: ti.template(), dt: float, factor: float, time: ti.f64):
+    """A whole step where there is one colour: one launch instead of four, each of which costs 0.1 ms."""
+    new_velocity(sim, True, dt, factor)
+    remap_pass(sim, 0)
+    velocity_after_remap(sim, factor)
+    particle_pass(sim, what, 0, dt, time)

@@ -24,6 +24,7 @@ def clear_means(sim: ti.template()):
 def spread_stress(sim: ti.template(), colour: int):
     """sum w_ip V_p sigma_p, sum w_ip V_p and sum w_ip V_p e_p to nodes; e: largest opening strain across the crack."""
     particles = sim.particles
+    ti.loop_config(serialize=sim.traversal.serial)
     for t in range(sim.traversal.items):
         if t % sim.traversal.stride == 0:
             start, stop, _ = sim.traversal.span(t, colour)

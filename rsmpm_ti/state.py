@@ -12,7 +12,7 @@ from rsmpm_ti.seeding import Seeds
 from rsmpm_ti.shape import offsets, rows
 from rsmpm_ti.spec import Affine, Scene
 from rsmpm_ti.tensors import PACKED_LENGTH
-from rsmpm_ti.traversal import Chunks, Stripes
+from rsmpm_ti.traversal import traversal
 
 MOST_FRESH = 4096
 """Most particles that crack by mean stress in one step; the others wait for the next."""
@@ -41,7 +41,7 @@ class Nodes:
         if self.remap:
             self.w, self.u = ti.Vector.field(grid.dim, real), ti.Vector.field(grid.dim, real)
         axes = (ti.ij, ti.ijk)[grid.dim - 2]
-        self.blocks = None
+        self.sparse, self.blocks = sparse, None
         if sparse:
             counts = tuple(-(-n // BLOCK) for n in grid.nodes)
             self.blocks = ti.root.pointer(axes, counts)
@@ -247,7 +247,7 @@ class Simulation:
         if count >= 2**31:
             raise SceneError(f"{count} particles are more than 2^31 - 1; use a larger dx or fewer particles per axis")
         self.particles = Particles(scene, count, real)
-        self.traversal = Chunks(count) if gpu else Stripes(self.grid.nodes[0])
+        self.traversal = traversal(count, self.grid.nodes[0], gpu)
         self.nodes = Nodes(scene, self.grid, real, use_sparse_grid(scene, count))
         self.events, self.ledger = Events(scene, count, real), Ledger(scene, self.traversal.count)
         self.averaging = scene.rock.criterion.breaks and scene.rock.averaging.acts

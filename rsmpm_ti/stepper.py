@@ -1,15 +1,19 @@
 """Time stepping: musl, usf and usl as lists of passes, and the clock that counts them."""
 
 import math
-from typing import NamedTuple
+from dataclasses import dataclass
 
-from rsmpm_ti.kernels import g2p, g2p_remap, p2g
+import taichi as ti
+
+from rsmpm_ti.kernels import g2p, g2p_remap, musl_step, p2g
 from rsmpm_ti.node_update import clear_nodes, momentum_to_velocity, remap_velocity, update_nodes
 from rsmpm_ti.state import Simulation
 from rsmpm_ti.tracking import track_cracks
 
 
-class Pass(NamedTuple):
+@ti.data_oriented
+@dataclass(frozen=True, kw_only=True)
+class Pass:
     """What one pass over the particles does: nodes to particles, then back to nodes."""
 
     velocity: bool = False
@@ -17,6 +21,13 @@ class Pass(NamedTuple):
     stress: bool = False
     momentum: bool = False
     force: bool = False
+
+
+MOVE = Pass(position=True, stress=True)
+MOVE_AND_LOAD = Pass(position=True, stress=True, momentum=True, force=True)
+STRESS_AND_FORCE = Pass(stress=True, force=True)
+VELOCITY_AND_MOVE = Pass(velocity=True, position=True)
+EVERYTHING = Pass(velocity=True, position=True, stress=True)
 
 
 def scatter_all(sim: Simulation, momentum: bool, force: bool, time: float) -> None:
@@ -37,14 +48,18 @@ def musl(sim: Simulation, dt: float, start: float, factors: list[float]) -> None
     clear_nodes(sim)
     scatter_all(sim, momentum=True, force=True, time=start)
     for step, factor in enumerate(factors, 1):
+        time = start + step * dt
+        # after the last step it is for nothing, and cheaper than compiling a pass that does not; but with averaging,
+        # where every other step may be the last, that is what is compiled
+        what = MOVE_AND_LOAD if step < len(factors) or not sim.averaging else MOVE
+        if sim.traversal.serial:
+            musl_step(sim, what, dt, factor, time)
+            continue
         update_nodes(sim, True, dt, factor)
         for colour in range(sim.traversal.colours):
             g2p_remap(sim, colour)
         remap_velocity(sim, factor)
-        # after the last step it is for nothing, and cheaper than compiling a pass that does not; but with averaging,
-        # where every other step may be the last, that is what is compiled
-        more = step < len(factors) or not sim.averaging
-        gather_all(sim, Pass(position=True, stress=True, momentum=more, force=more), dt, start + step * dt)
+        gather_all(sim, what, dt, time)
 
 
 def usf(sim: Simulation, dt: float, start: float, factors: list[float]) -> None:
@@ -54,9 +69,9 @@ def usf(sim: Simulation, dt: float, start: float, factors: list[float]) -> None:
         clear_nodes(sim)
         scatter_all(sim, momentum=True, force=False, time=time - dt)
         momentum_to_velocity(sim, factor)
-        gather_all(sim, Pass(stress=True, force=True), dt, time)
+        gather_all(sim, STRESS_AND_FORCE, dt, time)
         update_nodes(sim, False, dt, factor)
-        gather_all(sim, Pass(velocity=True, position=True), dt, time)
+        gather_all(sim, VELOCITY_AND_MOVE, dt, time)
 
 
 def usl(sim: Simulation, dt: float, start: float, factors: list[float]) -> None:
@@ -65,7 +80,7 @@ def usl(sim: Simulation, dt: float, start: float, factors: list[float]) -> None:
         clear_nodes(sim)
         scatter_all(sim, momentum=True, force=True, time=start + (step - 1) * dt)
         update_nodes(sim, True, dt, factor)
-        gather_all(sim, Pass(velocity=True, position=True, stress=True), dt, start + step * dt)
+        gather_all(sim, EVERYTHING, dt, start + step * dt)
 
 
 ORDERS = {"musl": musl, "usf": usf, "usl": usl}

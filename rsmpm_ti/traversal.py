@@ -1,8 +1,9 @@
-"""In what order particles meet nodes, and how they may add to them: the one place where CPU and GPU differ.
+"""In what order particles meet nodes, and how they may add to them: the one place where threads, CPU and GPU differ.
 
 Particles lie in cell order. A run of particles with the same base node gathers its node sums in locals and adds them
-once. On a CPU, stripes of rows in two colours share no node, so adding needs no atomics (a locked compare-exchange
-costs more than the arithmetic). On a GPU each thread takes a few neighbouring particles and adds atomically.
+once. One CPU thread takes all particles in turn. For several, stripes of rows in two colours share no node, so adding
+needs no atomics (a locked compare-exchange costs more than the arithmetic). On a GPU each thread takes a few
+neighbouring particles and adds atomically.
 """
 
 import taichi as ti
@@ -20,6 +21,7 @@ class Stripes:
     """CPU: stripes of ROWS rows along the first axis, even ones first, then odd ones."""
 
     colours = 2
+    serial = False
     stride = SPREAD  # only every so many iterations of a loop have work
 
     def __init__(self, rows: int):
@@ -48,10 +50,35 @@ class Stripes:
 
 
 @ti.data_oriented
+class Single:
+    """CPU, one thread: everything in turn, on the thread that asks. Waking another one costs 0.1 ms a loop."""
+
+    colours = 1
+    serial = True
+    stride = items = count = 1
+
+    def __init__(self, particle_count: int):
+        self.stop = ti.field(ti.i32, ())
+        self.stop[None] = particle_count
+
+    @ti.func
+    def span(self, t, colour):
+        return 0, self.stop[None], 0  # from a field, so that it is the first one touched: see kernels.py
+
+    @ti.func
+    def add(self, field: ti.template(), i, value):
+        field[i] = field[i] + value
+
+    def refresh(self, first_row) -> None:
+        pass
+
+
+@ti.data_oriented
 class Chunks:
     """GPU: every thread takes a few particles that are neighbours in cell order."""
 
     colours = 1
+    serial = False
     stride = 1
     size = 4
 
@@ -69,3 +96,10 @@ class Chunks:
 
     def refresh(self, first_row) -> None:
         pass
+
+
+def traversal(particle_count: int, rows: int, gpu: bool) -> Stripes | Single | Chunks:
+    """The one for the device and number of threads that Taichi was started with. rows: of nodes, along axis 0."""
+    if gpu:
+        return Chunks(particle_count)
+    return Single(particle_count) if ti.lang.impl.current_cfg().cpu_max_num_threads == 1 else Stripes(rows)

@@ -12,6 +12,7 @@ import taichi as ti
 def fold(columns: ti.template(), walls: ti.template()):
     """Node sums, as a tuple of scalar fields: give what lies beyond walls to the nodes inside."""
     for axis, row, inward, extent in ti.static(walls):
+        ti.loop_config(serialize=True)  # a few hundred nodes: waking threads costs more
         for node in ti.grouped(ti.ndrange(*extent)):
             along = inward * ti.Vector.unit(node.n, axis, int)
             wall = node + row * ti.Vector.unit(node.n, axis, int)
@@ -27,6 +28,7 @@ def fold(columns: ti.template(), walls: ti.template()):
 def extend(columns: ti.template(), walls: ti.template()):
     """Node velocities, or their changes: continue them linearly beyond walls."""
     for axis, row, inward, extent in ti.static(walls):
+        ti.loop_config(serialize=True)  # a few hundred nodes: waking threads costs more
         for node in ti.grouped(ti.ndrange(*extent)):
             along = inward * ti.Vector.unit(node.n, axis, int)
             wall = node + row * ti.Vector.unit(node.n, axis, int)
