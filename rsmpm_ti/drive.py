@@ -1,4 +1,4 @@
-"""A scene in motion: steps in chunks that are safe for the stripes, with a look at the particles after each."""
+"""A scene in motion: steps in chunks that are safe for the slabs, with a look at the particles after each."""
 
 import math
 
@@ -13,7 +13,7 @@ STRAY_SHARE = 0.02
 """Share of particles outside the cell they were sorted into above which they are sorted again."""
 
 SAFE_CELLS = 0.4
-"""Between two looks at the particles none may move further than this many cells, or stripes could meet."""
+"""Between two looks at the particles none may move further than this many cells, or slabs could meet."""
 
 
 class Drive:
@@ -36,6 +36,6 @@ class Drive:
             remaining -= chunk
             self.survey = survey(self.sim)
             guard(self.sim, self.clock, self.survey)
-            # stripes bear a stray of one row: half a cell beyond it and SAFE_CELLS more is still less than that
+            # slabs bear a stray of one row: half a cell beyond it and SAFE_CELLS more is still less than that
             if self.survey.far_strays or self.survey.strays > STRAY_SHARE * self.sim.particles.count:
                 sort_particles(self.sim)

@@ -121,17 +121,19 @@ def particles_to_nodes(sim: ti.template(), start, stop, what: ti.template(), tim
 
 
 @ti.kernel
-def p2g(sim: ti.template(), momentum: ti.template(), force: ti.template(), colour: int, time: ti.f64):
-    """Particles of one colour to nodes: mass and momentum, force, or both in one pass."""
-    ti.loop_config(serialize=sim.traversal.serial)
+def p2g(sim: ti.template(), momentum: ti.template(), force: ti.template(), time: ti.f64, ticket: int):
+    """Particles to nodes: mass and momentum, force, or both in one pass."""
+    ti.loop_config(serialize=sim.traversal.serial, block_dim=sim.traversal.block)
     for t in range(sim.traversal.items):
         if t % sim.traversal.stride == 0:
-            first, stop, _ = sim.traversal.span(t, colour)
-            while first < stop:
-                last = ti.min(first + BLOCK, stop)
-                find_bases(sim, first, last)
-                particles_to_nodes(sim, first, last, (momentum, momentum, force), time)
-                first = last
+            for part in range(sim.traversal.parts):
+                first, stop, _ = sim.traversal.span(t, part, ticket)
+                while first < stop:
+                    last = ti.min(first + BLOCK, stop)
+                    find_bases(sim, first, last)
+                    particles_to_nodes(sim, first, last, (momentum, momentum, force), time)
+                    first = last
+                sim.traversal.done(t, part, ticket)
 
 
 @ti.func
@@ -153,27 +155,29 @@ def velocity_to_particle(sim: ti.template(), p, w, xi, base, v_i: ti.template(),
 
 
 @ti.func
-def remap_pass(sim: ti.template(), colour):
+def remap_pass(sim: ti.template(), ticket):
     """musl: new velocities for particles, and their momentum back to the nodes with the same weights, in one pass."""
     particles, nodes = sim.particles, sim.nodes
-    ti.loop_config(serialize=sim.traversal.serial)
+    ti.loop_config(serialize=sim.traversal.serial, block_dim=sim.traversal.block)
     for t in range(sim.traversal.items):
         if t % sim.traversal.stride == 0:
-            first, stop, _ = sim.traversal.span(t, colour)
-            while first < stop:
-                last = run_stop(sim, first, stop)
-                base = sim.grid.base_of(particles.base[first])
-                v_i, dv_i = gather(sim, nodes.v, base), gather(sim, nodes.f, base)
-                m = ti.Vector.zero(float, sim.size)
-                mv, f = ti.Matrix.zero(float, sim.size, sim.dim), ti.Matrix.zero(float, sim.size, sim.dim)
-                for k in range((last - first) & MOST_RUN):
-                    p = first + k
-                    xi = coordinates(sim, p)
-                    w, _ = weights_and_gradients(sim, xi, base)
-                    velocity_to_particle(sim, p, w, xi, base, v_i, dv_i)
-                    add_to_nodes(sim, p, xi, base, (False, True, False), 0.0, m, mv, f)
-                scatter(sim, nodes.w, base, mv)
-                first = last
+            for part in range(sim.traversal.parts):
+                first, stop, _ = sim.traversal.span(t, part, ticket)
+                while first < stop:
+                    last = run_stop(sim, first, stop)
+                    base = sim.grid.base_of(particles.base[first])
+                    v_i, dv_i = gather(sim, nodes.v, base), gather(sim, nodes.f, base)
+                    m = ti.Vector.zero(float, sim.size)
+                    mv, f = ti.Matrix.zero(float, sim.size, sim.dim), ti.Matrix.zero(float, sim.size, sim.dim)
+                    for k in range((last - first) & MOST_RUN):
+                        p = first + k
+                        xi = coordinates(sim, p)
+                        w, _ = weights_and_gradients(sim, xi, base)
+                        velocity_to_particle(sim, p, w, xi, base, v_i, dv_i)
+                        add_to_nodes(sim, p, xi, base, (False, True, False), 0.0, m, mv, f)
+                    scatter(sim, nodes.w, base, mv)
+                    first = last
+                sim.traversal.done(t, part, ticket)
 
 
 @ti.func
@@ -246,43 +250,40 @@ def new_stress(sim: ti.template(), start, stop, slot, dt, time):
 
 
 @ti.func
-def particle_pass(sim: ti.template(), what: ti.template(), colour, dt, time):
-    """Nodes to particles of one colour, and back to nodes if asked while they are at hand; `time` at the step's end.
+def particle_pass(sim: ti.template(), what: ti.template(), dt, time, ticket):
+    """Nodes to particles, and back to nodes if asked while they are at hand; `time` at the step's end.
 
     `what.force` alone: the force of the new stress, at the weights of the step's start; with `what.momentum`, all that
     the next step needs, at the particles' new places.
     """
-    ti.loop_config(serialize=sim.traversal.serial)
+    ti.loop_config(serialize=sim.traversal.serial, block_dim=sim.traversal.block)
     for t in range(sim.traversal.items):
         if t % sim.traversal.stride == 0:
-            first, stop, slot = sim.traversal.span(t, colour)
-            while first < stop:
-                last = ti.min(first + BLOCK, stop)
-                nodes_to_particles(sim, first, last, slot, what, dt, time)
-                if ti.static(what.stress):
-                    new_stress(sim, first, last, slot, dt, time)
-                if ti.static(what.momentum):
-                    find_bases(sim, first, last)
-                    particles_to_nodes(sim, first, last, (True, True, True), time)
-                elif ti.static(what.force):
-                    particles_to_nodes(sim, first, last, (False, False, True), time - dt)
-                first = last
+            for part in range(sim.traversal.parts):
+                first, stop, slot = sim.traversal.span(t, part, ticket)
+                while first < stop:
+                    last = ti.min(first + BLOCK, stop)
+                    nodes_to_particles(sim, first, last, slot, what, dt, time)
+                    if ti.static(what.stress):
+                        new_stress(sim, first, last, slot, dt, time)
+                    if ti.static(what.momentum):
+                        find_bases(sim, first, last)
+                        particles_to_nodes(sim, first, last, (True, True, True), time)
+                    elif ti.static(what.force):
+                        particles_to_nodes(sim, first, last, (False, False, True), time - dt)
+                    first = last
+                sim.traversal.done(t, part, ticket)
 
 
 @ti.kernel
-def g2p_remap(sim: ti.template(), colour: int):
-    remap_pass(sim, colour)
+def g2p(sim: ti.template(), what: ti.template(), dt: float, time: ti.f64, ticket: int):
+    particle_pass(sim, what, dt, time, ticket)
 
 
 @ti.kernel
-def g2p(sim: ti.template(), what: ti.template(), colour: int, dt: float, time: ti.f64):
-    particle_pass(sim, what, colour, dt, time)
-
-
-@ti.kernel
-def musl_step(sim: ti.template(), what: ti.template(), dt: float, factor: float, time: ti.f64):
-    """A whole step where there is one colour: one launch instead of four, each of which costs 0.1 ms."""
+def musl_step(sim: ti.template(), what: ti.template(), dt: float, factor: float, time: ti.f64, ticket: int):
+    """A whole step: one launch instead of four, each of which costs 0.1 ms. Takes two tickets."""
     new_velocity(sim, True, dt, factor)
-    remap_pass(sim, 0)
+    remap_pass(sim, ticket)
     velocity_after_remap(sim, factor)
-    particle_pass(sim, what, 0, dt, time)
+    particle_pass(sim, what, dt, time, ticket + 1)

@@ -20,7 +20,7 @@ def clear_nodes(sim: ti.template()):
     # a loop over a field always wakes the threads, one over numbers need not; but a sparse grid must be asked for its
     # nodes. So here and below.
     if ti.static(not sim.nodes.sparse):
-        ti.loop_config(serialize=sim.traversal.serial)
+        ti.loop_config(serialize=sim.nodes.serial)
         for i in ti.grouped(ti.ndrange(*sim.grid.nodes)):
             clear_node(sim, i)
     else:
@@ -53,7 +53,7 @@ def momentum_to_velocity(sim: ti.template(), factor: float):
     """usf: velocity where momentum was."""
     fold(sim.nodes.momentum_columns, sim.grid.walls)
     if ti.static(not sim.nodes.sparse):
-        ti.loop_config(serialize=sim.traversal.serial)
+        ti.loop_config(serialize=sim.nodes.serial)
         for i in ti.grouped(ti.ndrange(*sim.grid.nodes)):
             sim.nodes.v[i] = velocity_of(sim, i, sim.nodes.v[i], factor)
     else:
@@ -74,18 +74,13 @@ def velocity_after_remap(sim: ti.template(), factor):
     """musl: w becomes velocity, u takes the step's, and mass, v and f are cleared for what the next step maps."""
     fold(sim.nodes.w_columns, sim.grid.walls)
     if ti.static(not sim.nodes.sparse):
-        ti.loop_config(serialize=sim.traversal.serial)
+        ti.loop_config(serialize=sim.nodes.serial)
         for i in ti.grouped(ti.ndrange(*sim.grid.nodes)):
             remap_node(sim, i, factor)
     else:
         for i in ti.grouped(sim.nodes.mass):
             remap_node(sim, i, factor)
     extend(sim.nodes.w_columns, sim.grid.walls)
-
-
-@ti.kernel
-def remap_velocity(sim: ti.template(), factor: float):
-    velocity_after_remap(sim, factor)
 
 
 @ti.func
@@ -123,7 +118,7 @@ def new_velocity(sim: ti.template(), divide: ti.template(), dt, factor):
         fold(nodes.momentum_columns, sim.grid.walls)
     fold(nodes.f_columns, sim.grid.walls)
     if ti.static(not nodes.sparse):
-        ti.loop_config(serialize=sim.traversal.serial)
+        ti.loop_config(serialize=sim.nodes.serial)
         for i in ti.grouped(ti.ndrange(*sim.grid.nodes)):
             update_node(sim, i, divide, dt, factor)
     else:

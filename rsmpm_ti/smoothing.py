@@ -21,22 +21,24 @@ def clear_means(sim: ti.template()):
 
 
 @ti.kernel
-def spread_stress(sim: ti.template(), colour: int):
+def spread_stress(sim: ti.template(), ticket: int):
     """sum w_ip V_p sigma_p, sum w_ip V_p and sum w_ip V_p e_p to nodes; e: largest opening strain across the crack."""
     particles = sim.particles
-    ti.loop_config(serialize=sim.traversal.serial)
+    ti.loop_config(serialize=sim.traversal.serial, block_dim=sim.traversal.block)
     for t in range(sim.traversal.items):
         if t % sim.traversal.stride == 0:
-            start, stop, _ = sim.traversal.span(t, colour)
-            for p in range(start, stop):
-                xi = coordinates(sim, p)
-                base = sim.grid.base(xi, sim.shape)
-                w, _ = weights_at(sim, xi, base)
-                sigma, V_p = particles.sigma[p], particles.volume[p] * particles.J[p]
-                carried = V_p * ti.Vector([sigma[0], sigma[1], sigma[2], sigma[3], 1.0, particles.widest[p][0]])
-                for offset in ti.static(sim.stencil):
-                    i = base + ti.Vector(offset)
-                    sim.traversal.add(sim.means.sums, i, tensor_weight(w, offset) * carried)
+            for part in range(sim.traversal.parts):
+                start, stop, _ = sim.traversal.span(t, part, ticket)
+                for p in range(start, stop):
+                    xi = coordinates(sim, p)
+                    base = sim.grid.base(xi, sim.shape)
+                    w, _ = weights_at(sim, xi, base)
+                    sigma, V_p = particles.sigma[p], particles.volume[p] * particles.J[p]
+                    carried = V_p * ti.Vector([sigma[0], sigma[1], sigma[2], sigma[3], 1.0, particles.widest[p][0]])
+                    for offset in ti.static(sim.stencil):
+                        i = base + ti.Vector(offset)
+                        sim.traversal.add(sim.means.sums, i, tensor_weight(w, offset) * carried)
+                sim.traversal.done(t, part, ticket)
 
 
 @ti.kernel
@@ -125,7 +127,6 @@ def near_hot(sim: ti.template(), p):
 def smooth_stress(sim) -> None:
     """Fill sim.means.sums for `mean_stress` and `read_openings`."""
     clear_means(sim)
-    for colour in range(sim.traversal.colours):
-        spread_stress(sim, colour)
+    spread_stress(sim, sim.traversal.ticket())
     blur(sim, sim.means.sums, sim.means.other, 0)
     blur(sim, sim.means.other, sim.means.sums, 1)

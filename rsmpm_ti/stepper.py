@@ -5,8 +5,8 @@ from dataclasses import dataclass
 
 import taichi as ti
 
-from rsmpm_ti.kernels import g2p, g2p_remap, musl_step, p2g
-from rsmpm_ti.node_update import clear_nodes, momentum_to_velocity, remap_velocity, update_nodes
+from rsmpm_ti.kernels import g2p, musl_step, p2g
+from rsmpm_ti.node_update import clear_nodes, momentum_to_velocity, update_nodes
 from rsmpm_ti.state import Simulation
 from rsmpm_ti.tracking import track_cracks
 
@@ -31,13 +31,11 @@ EVERYTHING = Pass(velocity=True, position=True, stress=True)
 
 
 def scatter_all(sim: Simulation, momentum: bool, force: bool, time: float) -> None:
-    for colour in range(sim.traversal.colours):
-        p2g(sim, momentum, force, colour, time)
+    p2g(sim, momentum, force, time, sim.traversal.ticket())
 
 
 def gather_all(sim: Simulation, what: Pass, dt: float, time: float) -> None:
-    for colour in range(sim.traversal.colours):
-        g2p(sim, what, colour, dt, time)
+    g2p(sim, what, dt, time, sim.traversal.ticket())
 
 
 def musl(sim: Simulation, dt: float, start: float, factors: list[float]) -> None:
@@ -48,18 +46,10 @@ def musl(sim: Simulation, dt: float, start: float, factors: list[float]) -> None
     clear_nodes(sim)
     scatter_all(sim, momentum=True, force=True, time=start)
     for step, factor in enumerate(factors, 1):
-        time = start + step * dt
         # after the last step it is for nothing, and cheaper than compiling a pass that does not; but with averaging,
         # where every other step may be the last, that is what is compiled
         what = MOVE_AND_LOAD if step < len(factors) or not sim.averaging else MOVE
-        if sim.traversal.serial:
-            musl_step(sim, what, dt, factor, time)
-            continue
-        update_nodes(sim, True, dt, factor)
-        for colour in range(sim.traversal.colours):
-            g2p_remap(sim, colour)
-        remap_velocity(sim, factor)
-        gather_all(sim, what, dt, time)
+        musl_step(sim, what, dt, factor, start + step * dt, sim.traversal.ticket(2))
 
 
 def usf(sim: Simulation, dt: float, start: float, factors: list[float]) -> None:

@@ -1,44 +1,65 @@
 """In what order particles meet nodes, and how they may add to them: the one place where threads, CPU and GPU differ.
 
 Particles lie in cell order. A run of particles with the same base node gathers its node sums in locals and adds them
-once. One CPU thread takes all particles in turn. For several, stripes of rows in two colours share no node, so adding
-needs no atomics (a locked compare-exchange costs more than the arithmetic). On a GPU each thread takes a few
-neighbouring particles and adds atomically.
+once. One CPU thread takes all particles in turn; of several, each takes a slab of rows and adds without atomics (a
+locked compare-exchange costs more than the arithmetic), in an order that keeps neighbours from the rows they share. On
+a GPU each thread takes a few neighbouring particles and adds atomically.
 """
 
 import taichi as ti
 
-ROWS = 4
-"""Rows of base nodes in a stripe. More than a stencil's width, so that stripes of one colour share no node even when
-particles have strayed one row since the last sort: (s + 1) ROWS + width - 1 < (s + 2) ROWS - 1."""
+REACH = 4
+"""Rows from a border within which the particles of two slabs share nodes: one more than a stencil is wide. Then it
+holds even for particles that have strayed one row since the last sort."""
 
 SPREAD = 512
-"""Taichi 1.7.4 runs a CPU range-for of 512 or fewer iterations on one thread, so each stripe is given 512."""
+"""Taichi 1.7.4 runs a CPU range-for of 512 or fewer iterations on one thread, so each slab is given 512."""
 
 
 @ti.data_oriented
-class Stripes:
-    """CPU: stripes of ROWS rows along the first axis, even ones first, then odd ones."""
+class Slabs:
+    """CPU, several threads: as many slabs of rows along the first axis, of about equally many particles.
 
-    colours = 2
+    A thread begins with the first REACH rows of its slab and says when it has added them; it ends with the last ones,
+    for which it waits until the next slab has added its first. Nothing waits for a slab that waits: with two threads
+    or more, as this is made for, one that may go on is always running.
+    """
+
     serial = False
-    stride = SPREAD  # only every so many iterations of a loop have work
+    parts = 3  # first rows, most rows, last rows
+    stride = block = SPREAD  # only every so many iterations of a loop have work
 
-    def __init__(self, rows: int):
-        self.count = -(-rows // ROWS)
-        self.items = (self.count // 2 + 1) * SPREAD  # loop iterations over the stripes of one colour
-        self.start = ti.field(ti.i32, self.count + 1)  # first particle of each stripe
+    def __init__(self, threads: int):
+        self.count = threads
+        self.items = threads * SPREAD  # loop iterations
+        self.bounds = ti.field(ti.i32, (threads, self.parts + 1))  # first particle of each part, and end of the last
+        self.ready = ti.field(ti.i32, threads)  # ticket of the last pass whose first rows are done
+        self._tickets = 0
+
+    def ticket(self, passes: int = 1) -> int:
+        """A number that no pass has had, and the following ones if a kernel makes several."""
+        self._tickets += passes
+        return self._tickets - passes + 1
 
     @ti.func
-    def span(self, t, colour):
-        """Particles [start, stop) of loop iteration t over the stripes of one colour, t a multiple of `stride`, and
-        the stripe as slot in ledgers."""
-        stripe = 2 * (t // SPREAD) + colour
-        slot = ti.min(stripe, self.count - 1)
-        start, stop = self.start[slot], self.start[slot + 1]
-        if stripe >= self.count:
-            stop = start
-        return start, stop, slot
+    def span(self, t, part, ticket):
+        """Particles [start, stop) of a part of loop iteration t, a multiple of `stride`, and the slab, a ledger's slot.
+
+        Returns when they may be added to nodes.
+        """
+        slab = t // SPREAD
+        if part == 2 and slab + 1 < self.count:
+            # an atomic, since nothing else makes the compiler look again and again
+            seen = ti.atomic_max(self.ready[slab + 1], 0)
+            while seen < ticket:
+                seen = ti.atomic_max(self.ready[slab + 1], 0)
+        return self.bounds[slab, part], self.bounds[slab, part + 1], slab
+
+    @ti.func
+    def done(self, t, part, ticket):
+        """To be called when the particles of a part have been added."""
+        if part == 0:
+            ti.atomic_max(self.ready[t // SPREAD], ticket)
 
     @ti.func
     def add(self, field: ti.template(), i, value):
@@ -46,24 +67,36 @@ class Stripes:
 
     def refresh(self, first_row) -> None:
         """`first_row`: NumPy base row of every particle, sorted."""
-        self.start.from_numpy(first_row.searchsorted([ROWS * s for s in range(self.count + 1)]).astype("int32"))
+        rows = [int(first_row[0])]
+        for slab in range(1, self.count):
+            fair = int(first_row[len(first_row) * slab // self.count])
+            rows.append(max(fair, rows[-1] + 2 * REACH))
+        rows.append(max(int(first_row[-1]) + 1, rows[-1] + 2 * REACH))
+        parts = [[low, low + REACH, high - REACH, high] for low, high in zip(rows[:-1], rows[1:], strict=True)]
+        self.bounds.from_numpy(first_row.searchsorted(parts).astype("int32"))
 
 
 @ti.data_oriented
 class Single:
     """CPU, one thread: everything in turn, on the thread that asks. Waking another one costs 0.1 ms a loop."""
 
-    colours = 1
     serial = True
-    stride = items = count = 1
+    parts = stride = block = items = count = 1
 
     def __init__(self, particle_count: int):
         self.stop = ti.field(ti.i32, ())
         self.stop[None] = particle_count
 
+    def ticket(self, passes: int = 1) -> int:
+        return 0
+
     @ti.func
-    def span(self, t, colour):
+    def span(self, t, part, ticket):
         return 0, self.stop[None], 0  # from a field, so that it is the first one touched: see kernels.py
+
+    @ti.func
+    def done(self, t, part, ticket):
+        pass
 
     @ti.func
     def add(self, field: ti.template(), i, value):
@@ -77,17 +110,24 @@ class Single:
 class Chunks:
     """GPU: every thread takes a few particles that are neighbours in cell order."""
 
-    colours = 1
     serial = False
-    stride = 1
+    parts = stride = 1
+    block = 128
     size = 4
 
     def __init__(self, particle_count: int):
         self.particle_count = particle_count
         self.items = self.count = -(-particle_count // self.size)
 
+    def ticket(self, passes: int = 1) -> int:
+        return 0
+
     @ti.func
-    def span(self, t, colour):
+    def done(self, t, part, ticket):
+        pass
+
+    @ti.func
+    def span(self, t, part, ticket):
         return t * self.size, ti.min((t + 1) * self.size, self.particle_count), t
 
     @ti.func
@@ -98,8 +138,9 @@ class Chunks:
         pass
 
 
-def traversal(particle_count: int, rows: int, gpu: bool) -> Stripes | Single | Chunks:
-    """The one for the device and number of threads that Taichi was started with. rows: of nodes, along axis 0."""
+def traversal(particle_count: int, gpu: bool) -> Slabs | Single | Chunks:
+    """The one for the device and the number of threads that Taichi was started with."""
+    threads = ti.lang.impl.current_cfg().cpu_max_num_threads
     if gpu:
         return Chunks(particle_count)
-    return Single(particle_count) if ti.lang.impl.current_cfg().cpu_max_num_threads == 1 else Stripes(rows)
+    return Slabs(threads) if threads > 1 else Single(particle_count)

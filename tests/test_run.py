@@ -173,13 +173,13 @@ def test_module_runs_as_a_command():
     assert "cube" in done.stdout and "flaw_angle" in done.stdout and "Taichi" not in done.stdout
 
 
-def test_a_flying_fragment_is_sorted_before_it_leaves_its_stripes_reach():
+def test_a_flying_fragment_is_sorted_before_it_leaves_its_slabs_reach():
     """One particle in a hundred moves: too few to be sorted for their share, so they must be for their distance."""
     from rsmpm_ti.laws import Hooke, Rock, Unbreakable
     from rsmpm_ti.measure import survey
     from rsmpm_ti.regions import Box
     from rsmpm_ti.spec import Body, Domain, Loading, Scene, Schedule
-    from rsmpm_ti.traversal import ROWS
+    from rsmpm_ti.traversal import REACH
 
     big = Body(region=Box(lower=(0.0, 0.0), upper=(0.02, 0.02)))
     small = Body(region=Box(lower=(0.03, 0.01), upper=(0.032, 0.012)), velocity=(200.0, 0.0))
@@ -207,5 +207,5 @@ def test_a_flying_fragment_is_sorted_before_it_leaves_its_stripes_reach():
     look.run = module._Run(scene, scene.particles(), None, "fragment", real, gpu, look, "f64")
     result = look.run.go()
     assert result.snapshot.displacement[-1, 0] > 0.01  # it has crossed more than ten cells
-    assert farthest <= 1 < ROWS
+    assert farthest <= 1 < REACH - 2
     assert survey(look.run.sim).sick == 0

@@ -1,5 +1,6 @@
 """Whole time steps against a plain NumPy loop over particles and nodes, and what transfers must keep exactly."""
 
+import itertools
 from types import SimpleNamespace
 
 import numpy as np
@@ -22,6 +23,7 @@ from rsmpm_ti.state import Simulation
 from rsmpm_ti.stepper import ORDERS, scatter_all
 from rsmpm_ti.tensors import PACKED_LENGTH
 from rsmpm_ti.transfer import Apic, PicFlip
+from rsmpm_ti.traversal import REACH, Slabs
 from rsmpm_ti.wall_nodes import fold
 
 DX = 0.5e-3
@@ -223,20 +225,37 @@ def test_strayed_particles_reach_the_same_nodes_as_after_sorting_again(simulatio
         close(strayed, sorted_again, epsilon(ti.f64), 100)
 
 
-@every_shape
-def test_stripes_of_one_colour_share_no_node_even_when_particles_strayed_by_a_row(simulations, shape):
-    """Two threads add to nodes without atomics; a clash shows only now and then in a result, so rows are counted."""
-    scene = free_scene(shape, PicFlip(flip=0.3))
-    sim = shared(simulations, scene)
-    cloud(scene, sim)
-    row, start = sim.particles.key.to_numpy() // sim.grid.nodes[1], sim.traversal.start.to_numpy()
-    assert start[0] == 0 and start[-1] == COUNT
-    for colour in range(sim.traversal.colours):
-        owner = {}
-        for stripe in range(colour, len(start) - 1, sim.traversal.colours):
-            for first in set(row[start[stripe] : start[stripe + 1]]):
-                for touched in range(first - 1, first + 1 + shape.width):
-                    assert owner.setdefault(touched, stripe) == stripe
+@pytest.mark.parametrize("threads", [2, 3, 5])
+@pytest.mark.parametrize("shape", variants(shapes, "weights"), ids=name_of)
+def test_slabs_share_rows_only_in_the_parts_that_wait_for_each_other(threads, shape):
+    """Threads add to nodes without atomics; a clash shows only now and then in a result, so rows are counted: those
+    that particles of a part may touch when they have strayed by a row. First rows of a slab are added before the last
+    ones of the slab before, which wait; nothing else of two slabs may meet."""
+    row = np.sort(np.random.default_rng(threads).integers(5, 60, size=4000))
+    slabs = Slabs(threads)
+    slabs.refresh(row)
+    bounds = slabs.bounds.to_numpy()
+    assert bounds[0, 0] == 0 and bounds[-1, -1] == len(row) and (bounds[1:, 0] == bounds[:-1, -1]).all()
+    assert (np.diff(bounds, axis=1) >= 0).all()
+    touched = {
+        (slab, part): {r + k for r in set(row[low:high]) for k in range(-1, 1 + shape.width)}
+        for slab, parts in enumerate(bounds)
+        for part, (low, high) in enumerate(itertools.pairwise(parts))
+    }
+    for (a, part_a), (b, part_b) in itertools.combinations(touched, 2):
+        if a < b and touched[a, part_a] & touched[b, part_b]:
+            assert b == a + 1 and (part_a, part_b) == (2, 0)
+    most = max(bounds[:, -1] - bounds[:, 0])
+    assert most < 1.5 * len(row) / threads
+
+
+@pytest.mark.parametrize("rows", [1, 3, 9, 17])
+def test_body_of_few_rows_is_shared_by_fewer_threads(rows):
+    slabs = Slabs(4)
+    slabs.refresh(np.repeat(np.arange(7, 7 + rows), 5))
+    bounds = slabs.bounds.to_numpy()
+    assert bounds[0, 0] == 0 and bounds.max() == 5 * rows
+    assert np.count_nonzero(bounds[:, -1] > bounds[:, 0]) == -(-rows // (2 * REACH))
 
 
 def test_sorting_changes_no_particle_and_puts_them_into_cell_order(simulations):
@@ -252,7 +271,7 @@ def test_sorting_changes_no_particle_and_puts_them_into_cell_order(simulations):
 
 
 def test_one_thread_and_two_give_the_same_step_in_single_precision(restart_taichi):
-    """And that of the plain loop: f32 is compared here. Two threads meet at the borders of stripes."""
+    """And that of the plain loop: f32 is compared here. Two threads meet at the border of their slabs."""
     scene, found = free_scene(Linear(), PicFlip(flip=0.3)), []
     for threads in (1, 2):
         restart_taichi(ti.f32, threads)
