@@ -140,15 +140,13 @@ def p2g(sim: ti.template(), momentum: ti.template(), force: ti.template(), time:
 def velocity_to_particle(sim: ti.template(), p, w, xi, base, v_i: ti.template(), dv_i: ti.template()):
     """New particle velocity, and affine matrix if carried, from node velocities [stencil, dim]."""
     particles = sim.particles
-    B = ti.Matrix.zero(float, sim.dim, sim.dim)
-    if ti.static(particles.affine):
-        for k, offset in ti.static(enumerate(sim.stencil)):
-            for d, e in ti.static(ti.ndrange(sim.dim, sim.dim)):
-                B[d, e] += tensor_weight(w, offset) * v_i[k, d] * (offset[e] - (xi[e] - base[e]))
     v_pic, dv = interpolate(sim, w, v_i), interpolate(sim, w, dv_i)
     particles.v[p] = sim.transfer.to_particle(particles.v[p], v_pic, dv)
     if ti.static(particles.affine):
-        D = spread(sim, w, xi - base)
+        B, D = ti.Matrix.zero(float, sim.dim, sim.dim), spread(sim, w, xi - base)
+        for k, offset in ti.static(enumerate(sim.stencil)):
+            for d, e in ti.static(ti.ndrange(sim.dim, sim.dim)):
+                B[d, e] += tensor_weight(w, offset) * v_i[k, d] * (offset[e] - (xi[e] - base[e]))
         for d, e in ti.static(ti.ndrange(sim.dim, sim.dim)):
             B[d, e] *= sim.grid.inv_dx / D[e]
         particles.C[p] = B
@@ -172,7 +170,7 @@ def remap_pass(sim: ti.template(), ticket):
                     for k in range((last - first) & MOST_RUN):
                         p = first + k
                         xi = coordinates(sim, p)
-                        w, _ = weights_and_gradients(sim, xi, base)
+                        w, dw = weights_and_gradients(sim, xi, base)
                         velocity_to_particle(sim, p, w, xi, base, v_i, dv_i)
                         add_to_nodes(sim, p, xi, base, (False, True, False), 0.0, m, mv, f)
                     scatter(sim, nodes.w, base, mv)

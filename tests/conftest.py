@@ -12,7 +12,10 @@ def pytest_collection_modifyitems(items):
 
 
 def start(real, threads: int = 2) -> None:
-    ti.init(arch=ti.cpu, default_fp=real, cpu_max_num_threads=threads, offline_cache=True, log_level=ti.ERROR)
+    ti.init(
+        arch=ti.cpu, default_fp=real, cpu_max_num_threads=threads, offline_cache=True, log_level=ti.ERROR,
+        cfg_optimization=False,  # as in a run
+    )  # fmt: skip
 
 
 @pytest.fixture(scope="module")
