@@ -107,7 +107,7 @@ def start_taichi(precision: str, arch: str, threads: int | None):
     with contextlib.redirect_stdout(io.StringIO()):  # it announces its backend there
         ti.init(
             arch=wanted, default_fp=real, cpu_max_num_threads=threads or os.cpu_count() or 1, log_level=ti.ERROR,
-            cfg_optimization=False,  # its time grows faster than the kernel (20 s for one of 6 s), and LLVM does the same
+            cfg_optimization=False,  # LLVM does the same; its time grows faster than the kernel: 20 s for one of 6 s
         )  # fmt: skip
     if arch == "cuda" and ti.lang.impl.current_cfg().arch != ti.cuda:
         raise SceneError("arch = 'cuda' is refused: no usable CUDA device was found; use --arch cpu")

@@ -32,7 +32,7 @@ def spread_stress(sim: ti.template(), ticket: int):
                 for p in range(start, stop):
                     xi = coordinates(sim, p)
                     base = sim.grid.base(xi, sim.shape)
-                    w, _ = weights_at(sim, xi, base)
+                    w, dw = weights_at(sim, xi, base)
                     sigma, V_p = particles.sigma[p], particles.volume[p] * particles.J[p]
                     carried = V_p * ti.Vector([sigma[0], sigma[1], sigma[2], sigma[3], 1.0, particles.widest[p][0]])
                     for offset in ti.static(sim.stencil):
@@ -59,7 +59,7 @@ def mean_stress(sim: ti.template(), p):
     """Packed mean stress at a particle."""
     xi = coordinates(sim, p)
     base = sim.grid.base(xi, sim.shape)
-    w, _ = weights_at(sim, xi, base)
+    w, dw = weights_at(sim, xi, base)
     total = ti.Vector.zero(float, 6)
     for offset in ti.static(sim.stencil):
         total += tensor_weight(w, offset) * sim.means.sums[base + ti.Vector(offset)]
