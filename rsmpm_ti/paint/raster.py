@@ -130,12 +130,14 @@ def resolve(
             for line in range(4):  # along the row, along the column, along both diagonals
                 di, dj = ti.min(1, line), (1 - line if line < 2 else 5 - 2 * line)
                 widest = gap if line < 2 else gap * 5 // 7  # a diagonal step is longer
-                before, after = reach(area, i, j, -di, -dj, widest), reach(area, i, j, di, dj, widest)
-                if before + after - 1 <= widest:
-                    rock = 1.0
-                    if 4 * covered(area, k, m) < UNIT:
-                        step = after if after < before else -before
-                        k, m = i + step * di, j + step * dj
+                before = reach(area, i, j, -di, -dj, widest)
+                if before <= widest:  # else no rock on one side: most of the void around the specimen
+                    after = reach(area, i, j, di, dj, widest + 1 - before)
+                    if before + after - 1 <= widest:
+                        rock = 1.0
+                        if 4 * covered(area, k, m) < UNIT:
+                            step = after if after < before else -before
+                            k, m = i + step * di, j + step * dj
         full = ti.max(1, ti.min(covered(area, k, m), UNIT))
         tension = ti.min(1.0, area[1, k, m] / full)
         shear = ti.min(1.0 - tension, area[2, k, m] / full)
