@@ -1,5 +1,7 @@
 """The speed-against-error sweep: what it runs, how the front and the recommendations are chosen."""
 
+import shutil
+import subprocess
 from dataclasses import replace
 
 import pytest
@@ -8,7 +10,10 @@ from rsmpm_ti.bench.__main__ import main
 from rsmpm_ti.bench.error import CSV_NAME, draw, read_sweep
 from rsmpm_ti.bench.front import cheapest, pareto, recommendations
 from rsmpm_ti.bench.measures import Measure
+from rsmpm_ti.bench.scaling import SIZES, particles, steps_for
 from rsmpm_ti.bench.settings import CELLS, SHAPES, Setting, sweep
+from rsmpm_ti.bench.speed import runners, timed
+from rsmpm_ti.bench.workers import WIDTHS, Runner, compile_twins, workers
 
 
 def entry(wall: float, error: float, **changes):
@@ -71,3 +76,43 @@ def test_unknown_case_is_refused(capsys):
     with pytest.raises(SystemExit) as stop:
         main(["error", "nonsense"])
     assert stop.value.code == 2
+
+
+@pytest.mark.skipif(shutil.which("g++") is None, reason="no g++")
+def test_twins_carry_a_flying_block(tmp_path):
+    """Both carry a block in free flight: after 20 steps it keeps its speed."""
+    from rsmpm_ti.bench.yardstick import NX, NY, Naive
+    from rsmpm_ti.run import start_taichi
+
+    twins = compile_twins(tmp_path)
+    start_taichi("f64", "cpu", 1)
+    for shape, width in WIDTHS.items():
+        naive = Naive(width)
+        for _ in range(20):
+            naive.step()
+        said = subprocess.run([twins[shape]], input="20\n", capture_output=True, text=True, check=True).stdout.split()
+        v = naive.v.to_numpy()
+        assert float(said[0]) > 0.1 and len(v) == 4 * NX * NY
+        assert float(said[1]) == pytest.approx(v[:, 0].mean(), rel=1e-6)
+
+
+def test_workers_give_rates_of_every_code(tmp_path):
+    with workers() as (pool, twins):
+        plan = [Runner("naive", "bspline"), Runner("solver", "linear", dx=2.5e-3, threads=2)]
+        plan += [Runner("c++", "linear")] * twins
+        rates = timed(plan, pool, rounds=2, steps=2)
+    assert all(len(values) == 2 and min(values) > 1e-4 for values in rates.values())
+    assert len({runner.label for runner in runners(2, True)}) == len(runners(2, True))
+
+
+def test_memory_is_that_of_the_fields(capsys):
+    """A plane-strain particle of the intact cube: 19 numbers of 8 bytes with scratch, and 5 of 4; less than 200."""
+    assert main(["memory", "intact"]) == 0
+    columns = capsys.readouterr().out.splitlines()[1].split()
+    assert columns[0] == "intact" and int(columns[1]) == 80000
+    assert int(columns[2]) == 18 * 8 + 5 * 4 and int(columns[2]) < 200
+
+
+def test_scaling_names_particles_and_takes_few_steps_of_many():
+    assert [particles(dx) for dx in SIZES] == [20000, 80000, 320000, 1280000, 5120000]
+    assert steps_for(SIZES[0]) == 500 and steps_for(SIZES[-1]) == 6

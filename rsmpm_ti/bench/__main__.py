@@ -15,11 +15,10 @@ def parser() -> argparse.ArgumentParser:
     speed.add_argument("--threads", type=int, default=os.cpu_count() or 1)
     speed.add_argument("--rounds", type=int, default=7)
     speed.add_argument("--steps", type=int, default=40)
-    passes = what.add_parser("passes", help="time of each kernel of a step")
+    passes = what.add_parser("passes", help="time of each part of a step")
     passes.add_argument("--shape", choices=SHAPES, default="bspline")
-    passes.add_argument("--order", choices=("musl", "usf"), default="musl")
-    passes.add_argument("--rounds", type=int, default=7)
-    passes.add_argument("--steps", type=int, default=40)
+    passes.add_argument("--threads", type=int, default=1)
+    passes.add_argument("--rounds", type=int, default=25)
     scaling = what.add_parser("scaling", help="cost per particle-step from 20 000 to 5 million particles")
     scaling.add_argument("--threads", type=int, default=os.cpu_count() or 1)
     scaling.add_argument("--rounds", type=int, default=3)
@@ -53,7 +52,7 @@ def _measure(options: argparse.Namespace) -> str:
     if options.what == "passes":
         from rsmpm_ti.bench.passes import passes
 
-        return passes(options.shape, options.order, options.rounds, options.steps)
+        return passes(options.shape, options.threads, options.rounds)
     if options.what == "scaling":
         from rsmpm_ti.bench.scaling import scaling
 

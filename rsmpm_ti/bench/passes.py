@@ -1,49 +1,42 @@
-"""`bench passes`: where the time of a step goes, kernel by kernel."""
+"""`bench passes`: where the time of a step goes. Parts of the one kernel that a step is, each compiled by itself."""
 
+import statistics
 import time
 
-KERNELS = ("p2g", "g2p", "g2p_remap", "clear_nodes", "update_nodes", "remap_velocity", "momentum_to_velocity")
 
-
-def passes(shape: str, order: str, rounds: int, steps: int) -> str:
-    """Nanoseconds per particle-step of each kernel, the fastest of the rounds, one thread."""
+def passes(shape: str, threads: int, rounds: int) -> str:
+    """Median nanoseconds per particle of each part, over rounds in turn; steps of no length, so that nothing moves."""
     import taichi as ti
 
-    from rsmpm_ti import stepper
     from rsmpm_ti.bench.workers import Runner, simulation
+    from rsmpm_ti.kernels import g2p, musl_step, p2g
+    from rsmpm_ti.node_update import update_nodes
     from rsmpm_ti.run import start_taichi
+    from rsmpm_ti.stepper import MOVE, MOVE_AND_LOAD, Pass
 
-    real, _ = start_taichi("f64", "cpu", 1)
-    drive = simulation(Runner("solver", shape, order=order), real)
+    real, _ = start_taichi("f64", "cpu", threads)
+    drive = simulation(Runner("solver", shape), real)
     drive.advance(3)
-    spent: dict[str, float] = {}
-
-    def timed(name: str, kernel):
-        def run(*arguments):
-            ti.sync()
+    sim, ticket = drive.sim, drive.sim.traversal.ticket
+    parts = {
+        "particles to nodes": lambda: p2g(sim, True, True, 0.0, ticket()),
+        "node update": lambda: update_nodes(sim, True, 0.0, 0.0),
+        "positions": lambda: g2p(sim, Pass(position=True), 0.0, 0.0, ticket()),
+        "gradient, stress, check": lambda: g2p(sim, Pass(stress=True), 0.0, 0.0, ticket()),
+        "positions, gradient, stress, check": lambda: g2p(sim, MOVE, 0.0, 0.0, ticket()),
+        "these and particles to nodes": lambda: g2p(sim, MOVE_AND_LOAD, 0.0, 0.0, ticket()),
+        "whole step": lambda: musl_step(sim, MOVE_AND_LOAD, 0.0, 0.0, 0.0, ticket(2)),
+    }
+    seconds: dict[str, list[float]] = {name: [] for name in parts}
+    for part in parts.values():
+        part()
+    for _ in range(rounds):
+        for name, part in parts.items():
             start = time.perf_counter()
-            kernel(*arguments)
+            part()
             ti.sync()
-            spent[name] = spent.get(name, 0.0) + time.perf_counter() - start
-
-        return run
-
-    originals = {name: getattr(stepper, name) for name in KERNELS}
-    best: dict[str, float] = {}
-    try:
-        for name, kernel in originals.items():
-            setattr(stepper, name, timed(name, kernel))
-        for _ in range(rounds):
-            spent.clear()
-            drive.clock.advance(steps)
-            if not best or sum(spent.values()) < sum(best.values()):
-                best = dict(spent)
-    finally:
-        for name, kernel in originals.items():
-            setattr(stepper, name, kernel)
-    scale = 1e9 / (steps * drive.sim.particles.count)
-    lines = [f"{shape}, {order}, f64, 1 thread, {steps} steps, the fastest of {rounds} rounds"]
-    lines += [
-        f"{name:<24}{scale * t:>8.1f} ns per particle-step" for name, t in sorted(best.items(), key=lambda b: -b[1])
-    ]
-    return "\n".join([*lines, f"{'together':<24}{scale * sum(best.values()):>8.1f}"])
+            seconds[name].append(time.perf_counter() - start)
+    scale = 1e9 / sim.particles.count
+    lines = [f"{shape}, musl, f64, {threads} thread(s), 80 000 particles, median of {rounds} rounds [ns per particle]"]
+    lines += [f"{name:<36}{scale * statistics.median(times):>8.1f}" for name, times in seconds.items()]
+    return "\n".join(lines)
