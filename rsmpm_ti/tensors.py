@@ -31,21 +31,6 @@ def pack(a, length: ti.template()):
 
 
 @ti.func
-def in_plane_times(s: ti.template(), g):
-    """sigma . g for a packed stress and a gradient of the grid's dimension."""
-    if ti.static(s.n == 4):
-        return ti.Vector([s[0] * g[0] + s[3] * g[1], s[3] * g[0] + s[1] * g[1]])
-    else:
-        return ti.Vector(
-            [
-                s[0] * g[0] + s[3] * g[1] + s[5] * g[2],
-                s[3] * g[0] + s[1] * g[1] + s[4] * g[2],
-                s[5] * g[0] + s[4] * g[1] + s[2] * g[2],
-            ]
-        )
-
-
-@ti.func
 def extreme_principals(s: ti.template()):
     """Largest and smallest of all three principal values of a packed symmetric tensor.
 
