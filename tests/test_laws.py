@@ -54,14 +54,17 @@ def turned(sxx: float, syy: float, szz: float, sxy: float, dim: int) -> np.ndarr
 
 
 def modes(states, dim: int, criterion=ROCK) -> np.ndarray:
+    """Mode of each state; `reached`, by which a step decides whom to look at, must name the same states."""
     length = PACKED_LENGTH[dim]
 
     @ti.func
     def mode(a: ti.template(), p):
         s = extreme_principals(vector(a, p, 0, length))
-        return ti.Vector([ti.cast(criterion.mode(s[0], s[1]), float)])
+        return ti.Vector([ti.cast(criterion.mode(s[0], s[1]), float), ti.cast(criterion.reached(s[0], s[1]), float)])
 
-    return on_rows(mode, states, 1)[:, 0].astype(int)
+    found, reached = on_rows(mode, states, 2).astype(int).T
+    np.testing.assert_array_equal(reached, found != INTACT)
+    return found
 
 
 # sxx, syy, szz, sxy in MPa, tension positive; every strength lies between two rows 0.02 MPa apart

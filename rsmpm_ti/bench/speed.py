@@ -53,7 +53,7 @@ def speed(threads: int, rounds: int, steps: int) -> str:
     for runner, values in rates.items():
         if runner.threads > 1:
             single = rates[replace(runner, threads=1)]
-            lines.append(f"{runner.label:<36}over 1 thread: {_ratios(values, single)}")
+            lines.append(f"{runner.label:<38}over 1 thread: {_ratios(values, single)}")
     return "\n".join(lines)
 
 
