@@ -182,6 +182,10 @@ class Unbreakable:
     def mode(self, sigma_1, sigma_3):
         return 0
 
+    @ti.func
+    def reached(self, sigma_1, sigma_3):
+        return 0
+
 
 @ti.data_oriented
 @dataclass(frozen=True, kw_only=True)
