@@ -4,7 +4,7 @@ import math
 
 from rsmpm_ti.measure import survey
 from rsmpm_ti.observe import guard
-from rsmpm_ti.sorting import sort_particles
+from rsmpm_ti.sorting import first_rows, sort_particles
 from rsmpm_ti.spec import Scene
 from rsmpm_ti.state import Simulation
 from rsmpm_ti.stepper import Clock
@@ -24,6 +24,12 @@ class Drive:
         self.sim = Simulation(scene, seeds, real, gpu)
         sort_particles(self.sim)
         self.clock = Clock(self.sim)
+        self.survey = survey(self.sim)
+
+    def look(self) -> None:
+        """Look at particles whose state, with the cells of their last sort, was put in from outside."""
+        self.sim.traversal.refresh(first_rows(self.sim))
+        self.sim.nodes.forget_empty()
         self.survey = survey(self.sim)
 
     def advance(self, steps: int) -> None:
