@@ -19,9 +19,9 @@ SAFE_CELLS = 0.4
 class Drive:
     """Particles, clock and the latest survey of one scene. Taichi must have been started."""
 
-    def __init__(self, scene: Scene, seeds, real, gpu: bool = False):
-        """seeds: `scene.particles()`; real: ti.f64 or ti.f32."""
-        self.sim = Simulation(scene, seeds, real, gpu)
+    def __init__(self, scene: Scene, seeds, real, gpu: bool = False, deterministic: bool = False):
+        """seeds: `scene.particles()`; real: ti.f64 or ti.f32; deterministic: same bits with any number of threads."""
+        self.sim = Simulation(scene, seeds, real, gpu, deterministic)
         sort_particles(self.sim)
         self.clock = Clock(self.sim)
         self.survey = survey(self.sim)

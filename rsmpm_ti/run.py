@@ -60,13 +60,15 @@ def simulate(
     precision: str = "f64",
     arch: str = "cpu",
     threads: int | None = None,
+    deterministic: bool = False,
     resume: bool = False,
     checkpoint_every: float = CHECKPOINT_S,
     progress: Callable[[Progress], None] | None = None,
 ) -> Result:
     """Run a scene to its end and write every file of a run into `out` (nothing is written when `out` is None).
 
-    precision: 'f64' or 'f32'; arch: 'cpu' or 'cuda'; threads: CPU threads, all by default; resume: go on from the
+    precision: 'f64' or 'f32'; arch: 'cpu' or 'cuda'; threads: CPU threads, all by default; deterministic: the same
+    bits whatever the number of threads, on one kind of machine; resume: go on from the
     checkpoint in `out`, from the start where there is none; checkpoint_every: wall time between checkpoints [s];
     progress: called after each history row. Ctrl-C and SIGTERM stop after the step and still write what there is.
     Raises SceneError for input that cannot be run, before anything compiles, and when files cannot be written any
@@ -78,13 +80,17 @@ def simulate(
         raise refuse("arch", arch, "'cpu' or 'cuda'")
     if threads is not None and not (isinstance(threads, int) and 1 <= threads <= 1024):
         raise refuse("threads", threads, "a whole number from 1 to 1024")
+    if deterministic and arch != "cpu":
+        raise refuse(
+            "deterministic", deterministic, "False on a GPU", "its sums are taken in any order; use --arch cpu"
+        )
     if not (math.isfinite(checkpoint_every) and checkpoint_every >= 0.0):
         raise refuse("checkpoint_every", checkpoint_every, "a number of seconds, 0 for one after each history row")
     if resume and out is None:
         raise refuse("resume", resume, "False without an output folder", "give the folder of the run as `out`")
     settings = Settings(
-        name=name, precision=precision, arch=arch, threads=threads, checkpoint_every=checkpoint_every,
-        progress=progress,
+        name=name, precision=precision, arch=arch, threads=threads, deterministic=deterministic,
+        checkpoint_every=checkpoint_every, progress=progress,
     )  # fmt: skip
     seeds, kept = scene.particles(), None
     if resume:
@@ -104,6 +110,7 @@ class Settings:
     precision: str = "f64"
     arch: str = "cpu"
     threads: int | None = None
+    deterministic: bool = False
     checkpoint_every: float = CHECKPOINT_S
     progress: Callable[[Progress], None] | None = None
 
@@ -111,7 +118,8 @@ class Settings:
         """What two runs must share if one goes on from the other's checkpoint."""
         from rsmpm_ti.record import to_plain
 
-        return {"rsmpm_ti": __version__, "precision": self.precision, "arch": self.arch, "scene": to_plain(scene)}
+        shared = {"precision": self.precision, "arch": self.arch, "deterministic": self.deterministic}
+        return {"rsmpm_ti": __version__, **shared, "scene": to_plain(scene)}
 
 
 def start_taichi(precision: str, arch: str, threads: int | None):
@@ -158,7 +166,7 @@ class Run:
         from rsmpm_ti.observe import History
 
         real, gpu = start_taichi(self.settings.precision, self.settings.arch, self.settings.threads)
-        self.drive = Drive(self.scene, seeds, real, gpu)
+        self.drive = Drive(self.scene, seeds, real, gpu, self.settings.deterministic)
         self.sim, self.clock = self.drive.sim, self.drive.clock
         self.history = History(self.sim, self.clock, self.drive.survey)
         self.row_steps = max(1, self.clock.total // self.scene.schedule.rows)
