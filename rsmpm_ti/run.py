@@ -15,41 +15,13 @@ import numpy as np
 
 from rsmpm_ti import __version__
 from rsmpm_ti.errors import SceneError, UnstableRun, refuse
+from rsmpm_ti.result import Progress, Result
 from rsmpm_ti.run_folder import forget, prepare, write_all, write_record
-from rsmpm_ti.snapshot import Snapshot
 from rsmpm_ti.spec import Scene
 from rsmpm_ti.stopping import asked_to_stop
 
 CHECKPOINT_S = 60.0
 """Seconds of wall time between checkpoints, unless said otherwise."""
-
-
-@dataclass(frozen=True)
-class Result:
-    """What a run leaves behind. `history`: structured array of HISTORY_COLUMNS; `summary`: the dict of summary.json;
-    `events`: EventTable; `fracture`: cracks, fragments and acoustic events measured on them; `snapshot`: last state.
-    `stopped`: "" when the run reached its end, else why it did not."""
-
-    history: np.ndarray
-    summary: dict
-    events: object
-    fracture: object
-    snapshot: Snapshot
-    out: Path | None
-    stopped: str = ""
-
-
-@dataclass(frozen=True)
-class Progress:
-    """What a progress bar shows."""
-
-    share: float
-    time: float
-    strain: float
-    stress: float
-    failed_tension: int
-    failed_shear: int
-    particle_steps_per_s: float
 
 
 def simulate(

@@ -16,7 +16,7 @@ LAYERS = """
     rocks confinement boundaries starts spec traversal grid state sorting stencil crack_stress material wall_nodes
     node_update kernels
     smoothing tracking margin measure stepper observe drive nominal cracks summary output fracture checkpoint
-    record paint frames gallery writer library run_folder stopping run writer_process scene verify study bench
+    record paint frames gallery writer library result run_folder stopping run writer_process scene verify study bench
 """.split()
 """A module imports only from modules to the left of its own name."""
 
