@@ -38,7 +38,10 @@ ADDED = {
     "viscosity": (rock(viscosity=BulkViscosity()), {"q"}),
     "affine transfer": (replace(BARE, transfer=Apic()), {"C"}),
     "failure": (rock(criterion=STRENGTH), {"mode"}),
-    "heterogeneity": (rock(criterion=STRENGTH, heterogeneity=Weibull(shape=6.0, reference_volume=1e-6)), {"mode", "strength"}),
+    "heterogeneity": (
+        rock(criterion=STRENGTH, heterogeneity=Weibull(shape=6.0, reference_volume=1e-6)),
+        {"mode", "strength"},
+    ),
     "directional cracks": (
         rock(criterion=STRENGTH, after_failure=SOFT),
         {"mode", "crack_angle", "slip", "opening", "widest", "lost", "failed"},
