@@ -220,7 +220,7 @@ class _Run:
         seeds = [getattr(body.seeding, "seed", None) for body in self.scene.bodies]
         record = {
             "rsmpm_ti": __version__, "name": self.name, "precision": self.precision, "seeds": seeds,
-            "machine": machine(), "scene": to_plain(self.scene),
+            "machine": machine(), "time_scale": self.scene.time_scale, "scene": to_plain(self.scene),
         }  # fmt: skip
         write_json(self.out / "scene.json", record)
 
@@ -242,7 +242,7 @@ class _Run:
             "compile_s": self.compile_s,
             "painting_s": self.painting_s,
             "particle_steps_per_s": speed,
-            "time_scale": self.scene.loading.time_scale,
+            "time_scale": self.scene.time_scale,
             **summarise(self.scene, history, events, self.history.energy_start),
             **fracture.numbers(),
             "stopped": stopped,

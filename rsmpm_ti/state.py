@@ -241,7 +241,7 @@ class Simulation:
         # mass scaling must leave the weight of a body unchanged, so its acceleration shrinks as its density grows
         force = scene.loading.body_force or (0.0,) * scene.dim
         self.heavy = any(component != 0.0 for component in force)
-        self.lightness = 1.0 / scene.loading.time_scale**2
+        self.lightness = 1.0 / scene.time_scale**2
         self.acceleration = tuple(component * self.lightness for component in force)
         self.force_field = scene.loading.force_field
         self.driven = self.force_field is not None
