@@ -22,6 +22,7 @@ class Survey:
     speed: float  # largest [m/s]
     J_min: float
     J_max: float
+    J_intact: float  # largest of rock that has not failed, 0 where all has
     sick: int  # particles with a non-finite value or outside the domain
     sick_id: int  # one of them, -1 if none
     strays: int  # particles that left the cell they were sorted into
@@ -53,9 +54,10 @@ def _survey(sim: ti.template()):
         v = particles.v[p]
         m_p = sim.density * particles.volume[p]
         sigma, J = particles.sigma[p], particles.J[p]
-        stored = J * rock.elasticity.energy(sigma)
+        stored, J_intact = J * rock.elasticity.energy(sigma), J
         if ti.static(particles.breaks):
             if particles.mode[p] != 0:
+                J_intact = 0.0
                 if ti.static(particles.cracks):
                     stored += J * spring_energy(sim, p)
                 else:
@@ -82,6 +84,7 @@ def _survey(sim: ti.template()):
             ti.atomic_max(report.speed[None], ti.cast(v.norm(), ti.f64))
             ti.atomic_min(report.J_min[None], ti.cast(J, ti.f64))
             ti.atomic_max(report.J_max[None], ti.cast(ti.select(gaping(sim, p), 1.0, J), ti.f64))
+            ti.atomic_max(report.J_intact[None], ti.cast(J_intact, ti.f64))
             for d in ti.static(range(sim.dim)):
                 report.momentum[d][None] += ti.cast(m_p * v[d], ti.f64)
         base = grid.base(xi, sim.shape)

@@ -184,7 +184,7 @@ class _Run:
         from rsmpm_ti.observe import take_snapshot
 
         start = time.perf_counter()
-        share = self.clock.step / self.clock.total
+        share = self.clock.share
         frame = self.timetable.frame_due(share, self.history.failed)
         vtu = self.timetable.vtu_due(share)
         if frame or vtu or force:
@@ -199,7 +199,7 @@ class _Run:
     def _progress(self) -> Progress:
         row = self.history.rows[-1]
         return Progress(
-            share=self.clock.step / self.clock.total,
+            share=self.clock.share,
             time=row[0],
             strain=row[1],
             stress=0.5 * (row[2] + row[3]),

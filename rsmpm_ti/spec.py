@@ -134,7 +134,8 @@ class Loading:
 class Schedule:
     """How long, and in what steps. Give `strain_end` (platen strain, compression positive) or `t_end` [s].
 
-    dt = cfl dx/c_p unless `dt` [s] is given. `rows` is about how many rows the history gets.
+    dt = cfl dx/c_p unless `dt` [s] is given. `rows` is about how many rows the history gets. adaptive: steps shrink as
+    particles move and swell, dt c_p/(c + |v|), for impacts; the number of steps is then not known beforehand.
     """
 
     strain_end: float | None = None
@@ -142,6 +143,7 @@ class Schedule:
     cfl: float = 0.5
     dt: float | None = None
     rows: int = 1000
+    adaptive: bool = False
 
     def __post_init__(self):
         if (self.strain_end is None) == (self.t_end is None):
@@ -307,6 +309,7 @@ class Scene:
 
     @property
     def steps(self) -> int:
+        """Of this dt: with an adaptive schedule they become more."""
         return max(1, math.ceil(self.t_end / self.dt - 1e-9))
 
     def particles(self) -> list[Seeds]:

@@ -197,6 +197,7 @@ SCALARS = (
     "speed",
     "J_min",
     "J_max",
+    "J_intact",
     "sick",
     "sick_id",
     "strays",

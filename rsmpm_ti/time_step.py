@@ -14,6 +14,16 @@ MOST = 2_000_000_000
 """Most particles, grid nodes and steps: 32-bit numbers count them, and no machine here would hold or finish more."""
 
 
+def adapted(dt: float, wave_speed: float, J: float, speed: float) -> float:
+    """A step [s] for rock that moves, of the one that fits rock at rest: cfl dx/(c + |v|), never longer than dt.
+
+    dt = cfl dx/c_p; J: largest volume ratio of intact rock; speed: largest of a particle [m/s]. Moduli are constant and
+    the density is rho/J, so waves run at c = c_p sqrt(J). Failed rock, which only resists compression, is slower. The
+    sum is the Courant number of waves that particles carry through cells (Belytschko et al. 2014, sec. 6.2).
+    """
+    return dt / max(1.0, math.sqrt(J) + speed / wave_speed)
+
+
 def check_step(scene) -> None:
     """Raises SceneError unless the steps of a `spec.Scene` are stable and can be counted."""
     schedule = scene.schedule
