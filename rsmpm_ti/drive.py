@@ -2,6 +2,9 @@
 
 import math
 
+import numpy as np
+
+from rsmpm_ti.leaving import Dropped, drop
 from rsmpm_ti.measure import survey
 from rsmpm_ti.observe import guard
 from rsmpm_ti.sorting import sort_particles
@@ -26,6 +29,7 @@ class Drive:
         sort_particles(self.sim)
         self.clock = Clock(self.sim)
         self.survey = survey(self.sim)
+        self.dropped = Dropped(count=0, mass=0.0, momentum=np.zeros(scene.dim), energy=0.0)
 
     def advance(self, steps: int) -> None:
         """Take steps, fewer if the scene ends before; if they adapt, as many as the time of so many scene.dt needs.
@@ -49,7 +53,6 @@ class Drive:
             if remaining > 0:
                 clock.retime((time - clock.time) / remaining)
                 remaining -= self._chunk(remaining)
-        clock.retime(clock.dt, time)
 
     def _chunk(self, most: int) -> int:
         """Take steps, at most so many, look at the particles, and sort them if they need it; how many were taken."""
@@ -57,6 +60,8 @@ class Drive:
         chunk = min(most, max(1, math.floor(SAFE_CELLS * self.sim.grid.dx / travel)))
         self.clock.advance(chunk)
         self.survey = survey(self.sim)
+        if self.survey.outside and not self.survey.sick:
+            self.survey, self.dropped = drop(self.sim, self.survey, self.dropped)
         guard(self.sim, self.clock, self.survey)
         # slabs bear a stray of one row: half a cell beyond it and SAFE_CELLS more is still less than that
         if self.survey.far_strays or self.survey.strays > STRAY_SHARE * self.sim.particles.count:

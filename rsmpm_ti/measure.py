@@ -25,6 +25,7 @@ class Survey:
     J_intact: float  # largest of rock that has not failed, 0 where all has
     sick: int  # particles with a non-finite value or outside the domain
     sick_id: int  # one of them, -1 if none
+    outside: int  # particles outside the domain where those are to be dropped, which then are not sick
     strays: int  # particles that left the cell they were sorted into
     far_strays: int  # those among them that are more than half a cell beyond its row
     momentum: np.ndarray  # [kg m/s], [dim]
@@ -42,6 +43,15 @@ def gaping(sim: ti.template(), p):
     if ti.static(sim.particles.cracks):
         apart = sim.particles.mode[p] != 0
     return apart
+
+
+@ti.func
+def left_domain(sim: ti.template(), xi):
+    """Whether a particle at grid coordinates xi is more than two cells beyond the domain: there stencils may end."""
+    left = False
+    for d in ti.static(range(sim.dim)):
+        left = left or xi[d] < 1.0 or xi[d] > sim.grid.nodes[d] - 2.0
+    return left
 
 
 @ti.kernel
@@ -65,8 +75,13 @@ def _survey(sim: ti.template()):
                     stored = pressure_energy(rock.after_failure.pressure(bulk, J), bulk, J)
         xi = grid.local(particles.reference[p] + particles.u[p])
         sick = 0
+        if left_domain(sim, xi):
+            if ti.static(sim.drops):
+                report.outside[None] += 1.0
+            else:
+                sick = 1
         for d in ti.static(range(sim.dim)):
-            if ti.math.isnan(v[d]) or ti.math.isinf(v[d]) or xi[d] < 1.0 or xi[d] > grid.nodes[d] - 2.0:
+            if ti.math.isnan(v[d]) or ti.math.isinf(v[d]):
                 sick = 1
             if ti.math.isnan(xi[d]):
                 sick = 1
@@ -128,7 +143,7 @@ def survey(sim: Simulation) -> Survey:
     _survey(sim)
     values, dim = sim.report.values.to_numpy(), sim.dim
     scalars = dict(zip(SCALARS, values, strict=False))
-    whole = {name: int(scalars.pop(name)) for name in ("sick", "sick_id", "strays", "far_strays")}
+    whole = {name: int(scalars.pop(name)) for name in ("sick", "sick_id", "outside", "strays", "far_strays")}
     modes = values[len(SCALARS) : FIXED]
     return Survey(
         **scalars,

@@ -245,6 +245,7 @@ class _Run:
             "time_scale": self.scene.time_scale,
             **summarise(self.scene, history, events, self.history.energy_start),
             **fracture.numbers(),
+            **self.drive.dropped.numbers(),
             "stopped": stopped,
         }
         if self.out is not None:

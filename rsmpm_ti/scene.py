@@ -195,6 +195,8 @@ def report(result) -> str:
         )
         if s["platen_imbalance"] > 0.01:
             lines.append("warning: above 1 % the loading is not quasi-static; lower loading.time_scale or the speed")
+    if s["dropped"]:
+        lines.append(f"{s['dropped']} particles left the domain with {s['dropped_energy_J']:.3g} J and were dropped")
     if result.stopped:
         lines.append(f"stopped early: {result.stopped}; everything up to there is written")
     lines.append(f"written to {result.out}")

@@ -33,6 +33,7 @@ MODE_NAMES = ("intact", "tension", "shear")
 class Snapshot:
     """Particles at one instant, in the order of their ids, which is the order in which they were seeded.
 
+    Those that have left the domain and were dropped are not among them.
     Shapes: n particles in dim dimensions. Stress is Cauchy, tension positive.
     """
 

@@ -30,15 +30,19 @@ def reorder(sim: ti.template()):
 
 
 def sort_particles(sim: Simulation) -> None:
-    """Put particles into cell order; ties keep their order, so the result does not depend on threads."""
+    """Put particles into cell order; ties keep their order, so the result does not depend on threads.
+
+    Dropped particles, which have no volume, come last, and passes end before them.
+    """
     cell_keys(sim)
     key = sim.particles.key.to_numpy()
-    order = np.argsort(key, kind="stable").astype(np.int32)
+    gone = sim.particles.volume.to_numpy() == 0.0 if sim.drops else np.zeros(len(key), dtype=bool)
+    order = np.lexsort((key, gone)).astype(np.int32)
     if not np.array_equal(order, np.arange(len(order))):
         sim.particles.order.from_numpy(order)
         reorder(sim)
         cell_keys(sim)
-    sim.traversal.refresh(key[order] // int(np.prod(sim.grid.nodes[1:])))
+    sim.traversal.refresh(key[order[: len(key) - gone.sum()]] // int(np.prod(sim.grid.nodes[1:])))
     sim.nodes.forget_empty()
 
 

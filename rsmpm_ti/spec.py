@@ -25,12 +25,16 @@ from rsmpm_ti.transfer import Apic, PicFlip
 
 @dataclass(frozen=True, kw_only=True)
 class Domain:
-    """The background grid: a box of cells of edge dx [m]; `grid` is 'dense', 'sparse' or 'auto' (by occupancy)."""
+    """The background grid: a box of cells of edge dx [m]; `grid` is 'dense', 'sparse' or 'auto' (by occupancy).
+
+    A particle that flies more than two cells beyond it ends the run, or with outside = 'drop' is taken out of it.
+    """
 
     lower: tuple[float, ...]
     upper: tuple[float, ...]
     dx: float
     grid: str = "dense"
+    outside: str = "stop"
 
     def __post_init__(self):
         if not (math.isfinite(self.dx) and self.dx > 0.0):
@@ -44,6 +48,8 @@ class Domain:
             raise refuse("domain.upper", self.upper, f"at least one cell above domain.lower = {self.lower}")
         if self.grid not in ("dense", "sparse", "auto"):
             raise refuse("domain.grid", self.grid, "'dense', 'sparse' or 'auto'")
+        if self.outside not in ("stop", "drop"):
+            raise refuse("domain.outside", self.outside, "'stop' or 'drop'")
         nodes = math.prod(edge / float(self.dx) + 1.0 for edge in edges)
         if nodes > MOST:
             raise refuse("domain.dx", self.dx, f"such that the grid has at most {MOST:.3g} nodes, not {nodes:.3g}")

@@ -200,6 +200,7 @@ SCALARS = (
     "J_intact",
     "sick",
     "sick_id",
+    "outside",
     "strays",
     "far_strays",
     "work",
@@ -247,6 +248,7 @@ class Simulation:
         self.force_field = scene.loading.force_field
         self.driven = self.force_field is not None
         self.grid = Grid(scene)
+        self.drops = scene.domain.outside == "drop"
         count = sum(len(body.x) for body in seeds)
         if count >= 2**31:
             raise SceneError(f"{count} particles are more than 2^31 - 1; use a larger dx or fewer particles per axis")

@@ -110,10 +110,9 @@ class Clock:
     def done(self) -> bool:
         return self.step >= self.total
 
-    def retime(self, dt: float, time: float | None = None) -> None:
-        """Steps of dt [s] from here on; `time` [s]: what it is now, where rounding would miss it."""
-        self._since = self.step, self.time if time is None else time
-        self.dt = dt
+    def retime(self, dt: float) -> None:
+        """Steps of dt [s] from here on."""
+        self._since, self.dt = (self.step, self.time), dt
         self.total = self.step + math.ceil((self.end - self.time) / dt - 1e-6)
 
     def advance(self, steps: int) -> None:

@@ -15,8 +15,8 @@ LAYERS = """
     errors units snapshot tensors regions seeding heterogeneity shape transfer averaging softening directional laws
     rocks confinement boundaries starts quasi_static time_step spec traversal grid state sorting stencil crack_stress
     material wall_nodes node_update kernels
-    smoothing tracking margin measure stepper observe drive nominal cracks summary output fracture record paint frames
-    library run scene verify study bench
+    smoothing tracking margin measure leaving stepper observe drive nominal cracks summary output fracture record paint
+    frames library run scene verify study bench
 """.split()
 """A module imports only from modules to the left of its own name."""
 
