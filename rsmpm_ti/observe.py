@@ -82,6 +82,7 @@ def take_snapshot(sim: Simulation, time: float) -> Snapshot:
         crack_angle[begun] = np.degrees(column(particles.crack_angle)[begun]) % 180.0
     return Snapshot(
         time=time,
+        id=ids[order],
         x=column(particles.reference) + u,
         displacement=u,
         velocity=column(particles.v),

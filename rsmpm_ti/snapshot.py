@@ -38,6 +38,7 @@ class Snapshot:
     """
 
     time: float  # [s]
+    id: np.ndarray  # ascending, int [n]
     x: np.ndarray  # current positions [m], [n, dim]
     displacement: np.ndarray  # [m], [n, dim]
     velocity: np.ndarray  # [m/s], [n, dim]
