@@ -2,7 +2,7 @@
 
 A time scale k multiplies the density by k^2, so waves run k times slower and their impedance is k rho c. Platens that
 close with a strain rate e' load the rock by rho c^2 e' per second, and whatever takes a wave the time l k/c to reach
-errs by k rho c e' l (Kolsky 1963, Stress Waves in Solids, ch. 3: the stress jump rho c v of a wave). So, over the
+errs by k rho c e' l (the stress jump rho c v of a wave: Kolsky 1963, Stress Waves in Solids). So, over the
 stress s at first failure, with rate e', height H, closing speed e' H and the start's factor on it:
 
 - Affine start: the velocities are those of uniform strain, which is exact but for a flaw. Its faces learn of the load
@@ -21,7 +21,7 @@ across it in units of P/(pi R) (Hondros 1959), and at the tip of a flaw by the m
 over a distance d (Novozhilov 1969, J. Appl. Math. Mech. 33:201; Seweryn 1994, Eng. Fract. Mech. 47:673), sqrt(2a/d)
 cos(t/2) (s_n cos^2(t/2) - 3/2 tau sin(t)) at its worst angle t, plus the stress along the flaw that its blunt end
 turns into tension, as at an elliptic hole (Inglis 1913). d is the length of averaging, or a cell, which the grid
-averages over. Platen strain of a disc: Hertz between plates (Johnson 1985, Contact Mechanics, eq. 5.57).
+averages over. Platen strain of a disc: Hertz between plates (Johnson 1985, Contact Mechanics, sec. 5.6).
 
 When it fails: it knows one flaw at a time, straight and alone, and no failure beside the platens; after the first
 failure a collapse is as violent as the mass that was added.

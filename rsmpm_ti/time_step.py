@@ -19,7 +19,7 @@ def adapted(dt: float, wave_speed: float, J: float, speed: float) -> float:
 
     dt = cfl dx/c_p; J: largest volume ratio of intact rock; speed: largest of a particle [m/s]. Moduli are constant and
     the density is rho/J, so waves run at c = c_p sqrt(J). Failed rock, which only resists compression, is slower. The
-    sum is the Courant number of waves that particles carry through cells (Belytschko et al. 2014, sec. 6.2).
+    sum is the speed of a wave through the cells that material carries along (Courant, Friedrichs & Lewy 1928).
     """
     return dt / max(1.0, math.sqrt(J) + speed / wave_speed)
 

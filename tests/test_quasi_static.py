@@ -82,6 +82,25 @@ def test_flawed_rock_is_limited_by_waves_along_the_flaw():
     assert found.strain == pytest.approx(found.stress / MODULUS)
 
 
+def test_a_disc_is_hondros_inside_and_hertz_between_plates():
+    """3 P/(pi R) along the load makes 3 at the crown of a slit along it, P/(pi R) across it opens its tips."""
+    scene = load_scene("disc", quick=True, settings={"loading.time_scale": "auto"})
+    found = estimate(scene)
+    assert found.stress == pytest.approx(2e6 / (math.sqrt(30e-3 / 1e-3) + 3.0), rel=1e-4)
+    # 2 P/(pi E') (2 ln(4R/b) - 1) over 2R; b = 10 mm touches within a cell of 1 mm
+    assert found.strain == pytest.approx(found.stress / MODULUS * (2.0 * math.log(4.0 * 50.0 / 10.0) - 1.0))
+
+
+def test_confinement_holds_tension_back_and_raises_the_strength():
+    slit = estimate(auto("cube", confinement=2e6)).stress
+    assert slit == pytest.approx(2.0 * estimate(auto("cube")).stress)  # the tensile strength is 2 MPa too
+    # UCS + 4.599 p in all, p of it there from the start; unless the end of the scene comes first
+    squeezed = auto("intact", confinement=2e6)
+    assert estimate(squeezed).stress == pytest.approx(1.6e-3 * MODULUS)
+    longer = replace(squeezed, schedule=replace(squeezed.schedule, strain_end=2.5e-3))
+    assert estimate(longer).stress == pytest.approx(UCS + 3.599 * 2e6, rel=1e-4)
+
+
 @pytest.mark.parametrize(
     "change, words",
     [
