@@ -11,6 +11,7 @@ from pathlib import Path
 import numpy as np
 
 from rsmpm_ti.errors import SceneError
+from rsmpm_ti.leaving import Dropped
 from rsmpm_ti.output import CHECKPOINTS
 from rsmpm_ti.snapshot import HISTORY_COLUMNS
 
@@ -31,6 +32,7 @@ def take(drive, history, progress: dict, identity: dict) -> dict[str, np.ndarray
     arrays["event_onset"] = np.array(sim.events.onset[None])
     arrays["history"] = np.array(history.rows, dtype=float).reshape(-1, len(HISTORY_COLUMNS))
     arrays |= {f"baseline_{name}": np.array(value) for name, value in history.baseline.items()}
+    arrays |= {f"dropped_{name}": np.array(value) for name, value in vars(drive.dropped).items()}
     arrays |= {f"clock_{name}": np.array(value) for name, value in drive.clock.state().items()}
     arrays["text"] = np.array(json.dumps({"progress": progress, "identity": identity}))
     return arrays
@@ -57,6 +59,10 @@ def restore(arrays: dict[str, np.ndarray], drive, history) -> dict:
     history.rows[:] = [tuple(row) for row in arrays["history"].tolist()]
     history.baseline = {name: arrays[f"baseline_{name}"] for name in history.baseline}
     drive.clock.resume({name: arrays[f"clock_{name}"] for name in drive.clock.state()})
+    drive.dropped = Dropped(
+        count=int(arrays["dropped_count"]), momentum=arrays["dropped_momentum"],
+        **{name: float(arrays[f"dropped_{name}"]) for name in ("mass", "energy")},
+    )  # fmt: skip
     drive.look()
     return json.loads(str(arrays["text"]))["progress"]
 

@@ -2,12 +2,16 @@
 
 import math
 
+import numpy as np
+
+from rsmpm_ti.leaving import Dropped, drop
 from rsmpm_ti.measure import survey
 from rsmpm_ti.observe import guard
 from rsmpm_ti.sorting import first_rows, sort_particles
 from rsmpm_ti.spec import Scene
 from rsmpm_ti.state import Simulation
 from rsmpm_ti.stepper import Clock
+from rsmpm_ti.time_step import adapted
 
 STRAY_SHARE = 0.02
 """Share of particles outside the cell they were sorted into above which they are sorted again."""
@@ -25,6 +29,7 @@ class Drive:
         sort_particles(self.sim)
         self.clock = Clock(self.sim)
         self.survey = survey(self.sim)
+        self.dropped = Dropped(count=0, mass=0.0, momentum=np.zeros(scene.dim), energy=0.0)
 
     def look(self) -> None:
         """Look at particles whose state, with the cells of their last sort, was put in from outside."""
@@ -33,15 +38,38 @@ class Drive:
         self.survey = survey(self.sim)
 
     def advance(self, steps: int) -> None:
-        """Take steps, fewer if the scene ends before. Raises UnstableRun when a particle is no longer rock."""
+        """Take steps, fewer if the scene ends before; if they adapt, as many as the time of so many scene.dt needs.
+
+        Raises UnstableRun when a particle is no longer rock.
+        """
+        if self.sim.scene.schedule.adaptive:
+            self._advance_to(min(self.clock.time + steps * self.sim.scene.dt, self.clock.end))
+            return
         remaining = min(steps, self.clock.total - self.clock.step)
         while remaining > 0:
-            travel = max(self.survey.speed * self.clock.dt, 1e-30)
-            chunk = min(remaining, max(1, math.floor(SAFE_CELLS * self.sim.grid.dx / travel)))
-            self.clock.advance(chunk)
-            remaining -= chunk
-            self.survey = survey(self.sim)
-            guard(self.sim, self.clock, self.survey)
-            # slabs bear a stray of one row: half a cell beyond it and SAFE_CELLS more is still less than that
-            if self.survey.far_strays or self.survey.strays > STRAY_SHARE * self.sim.particles.count:
-                sort_particles(self.sim)
+            remaining -= self._chunk(remaining)
+
+    def _advance_to(self, time: float) -> None:
+        """Equal steps to a time [s], as many as the latest look asks for, and after each look again."""
+        scene, clock = self.sim.scene, self.clock
+        remaining = 1
+        while remaining > 0:
+            limit = adapted(scene.dt, scene.wave_speed, self.survey.J_intact, self.survey.speed)
+            remaining = math.ceil((time - clock.time) / limit - 1e-9)
+            if remaining > 0:
+                clock.retime((time - clock.time) / remaining)
+                remaining -= self._chunk(remaining)
+
+    def _chunk(self, most: int) -> int:
+        """Take steps, at most so many, look at the particles, and sort them if they need it; how many were taken."""
+        travel = max(self.survey.speed * self.clock.dt, 1e-30)
+        chunk = min(most, max(1, math.floor(SAFE_CELLS * self.sim.grid.dx / travel)))
+        self.clock.advance(chunk)
+        self.survey = survey(self.sim)
+        if self.survey.outside and not self.survey.sick:
+            self.survey, self.dropped = drop(self.sim, self.survey, self.dropped)
+        guard(self.sim, self.clock, self.survey)
+        # slabs bear a stray of one row: half a cell beyond it and SAFE_CELLS more is still less than that
+        if self.survey.far_strays or self.survey.strays > STRAY_SHARE * self.sim.particles.count:
+            sort_particles(self.sim)
+        return chunk

@@ -64,7 +64,7 @@ def measure_fracture(scene: Scene, history: np.ndarray, events: EventTable, snap
     if scene.dim == 2:
         tips = flaw_tips(tuple(slit for body in scene.bodies for slit in slits_of(body.region)))
     bands, graph = find_bands(events, spacing)
-    cracks = measure_cracks(events, bands, graph, tips, spacing, scene.loading.time_scale)
+    cracks = measure_cracks(events, bands, graph, tips, spacing, scene.time_scale)
     acoustic = gather(events, spacing, shear_speed)
     return Fracture(
         cracks=cracks,

@@ -8,6 +8,7 @@ import inspect
 import operator
 import sys
 import traceback
+import types
 import typing
 from dataclasses import replace
 from pathlib import Path
@@ -123,7 +124,7 @@ def _call(function, path: Path, overrides: dict, settings: dict[str, str]) -> Sc
                 _unknown(key, list(parameters), f"scene {path.stem}", fields, typing.get_type_hints(Scene))
             )
     for key, text in settings.items():
-        values[key] = _parse(key, text, _kind_of(parameters[key].default))
+        values[key] = _parse(key, text, _kind_of(parameters[key]))
     try:
         scene = function(**values)
     except SceneError:
@@ -141,8 +142,12 @@ def _unknown(key: str, names: list[str], owner: str, more: str = "", also=()) ->
     return f"{owner} has no setting {key!r}; it has: {', '.join(names)}{more}{hint}"
 
 
-def _kind_of(default: object):
-    """What a keyword takes, as an annotation, from its default: a class may be any of its kind."""
+def _kind_of(parameter: inspect.Parameter):
+    """What a keyword takes, as an annotation: its own if that offers a choice, else by its default; a class may be any
+    of its kind."""
+    default = parameter.default
+    if isinstance(parameter.annotation, types.UnionType):
+        return parameter.annotation
     if default is None or default is inspect.Parameter.empty:
         return float | None
     if isinstance(default, tuple):

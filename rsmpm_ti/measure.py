@@ -22,8 +22,10 @@ class Survey:
     speed: float  # largest [m/s]
     J_min: float
     J_max: float
+    J_intact: float  # largest of rock that has not failed, 0 where all has
     sick: int  # particles with a non-finite value or outside the domain
     sick_id: int  # one of them, -1 if none
+    outside: int  # particles outside the domain where those are to be dropped, which then are not sick
     strays: int  # particles that left the cell they were sorted into
     far_strays: int  # those among them that are more than half a cell beyond its row
     momentum: np.ndarray  # [kg m/s], [dim]
@@ -43,6 +45,15 @@ def gaping(sim: ti.template(), p):
     return apart
 
 
+@ti.func
+def left_domain(sim: ti.template(), xi):
+    """Whether a particle at grid coordinates xi is more than two cells beyond the domain: there stencils may end."""
+    left = False
+    for d in ti.static(range(sim.dim)):
+        left = left or xi[d] < 1.0 or xi[d] > sim.grid.nodes[d] - 2.0
+    return left
+
+
 @ti.kernel
 def _survey(sim: ti.template()):
     """Fill sim.report; its fields first, the vector of all of them last, so that one copy brings them to Python."""
@@ -54,9 +65,10 @@ def _survey(sim: ti.template()):
         v = particles.v[p]
         m_p = sim.density * particles.volume[p]
         sigma, J = particles.sigma[p], particles.J[p]
-        stored = J * rock.elasticity.energy(sigma)
+        stored, J_intact = J * rock.elasticity.energy(sigma), J
         if ti.static(particles.breaks):
             if particles.mode[p] != 0:
+                J_intact = 0.0
                 if ti.static(particles.cracks):
                     stored += J * spring_energy(sim, p)
                 else:
@@ -64,8 +76,13 @@ def _survey(sim: ti.template()):
                     stored = pressure_energy(rock.after_failure.pressure(bulk, J), bulk, J)
         xi = grid.local(particles.reference[p] + particles.u[p])
         sick = 0
+        if left_domain(sim, xi):
+            if ti.static(sim.drops):
+                report.outside[None] += 1.0
+            else:
+                sick = 1
         for d in ti.static(range(sim.dim)):
-            if ti.math.isnan(v[d]) or ti.math.isinf(v[d]) or xi[d] < 1.0 or xi[d] > grid.nodes[d] - 2.0:
+            if ti.math.isnan(v[d]) or ti.math.isinf(v[d]):
                 sick = 1
             if ti.math.isnan(xi[d]):
                 sick = 1
@@ -83,6 +100,7 @@ def _survey(sim: ti.template()):
             ti.atomic_max(report.speed[None], ti.cast(v.norm(), ti.f64))
             ti.atomic_min(report.J_min[None], ti.cast(J, ti.f64))
             ti.atomic_max(report.J_max[None], ti.cast(ti.select(gaping(sim, p), 1.0, J), ti.f64))
+            ti.atomic_max(report.J_intact[None], ti.cast(J_intact, ti.f64))
             for d in ti.static(range(sim.dim)):
                 report.momentum[d][None] += ti.cast(m_p * v[d], ti.f64)
         base = grid.base(xi, sim.shape)
@@ -126,7 +144,7 @@ def survey(sim: Simulation) -> Survey:
     _survey(sim)
     values, dim = sim.report.values.to_numpy(), sim.dim
     scalars = dict(zip(SCALARS, values, strict=False))
-    whole = {name: int(scalars.pop(name)) for name in ("sick", "sick_id", "strays", "far_strays")}
+    whole = {name: int(scalars.pop(name)) for name in ("sick", "sick_id", "outside", "strays", "far_strays")}
     modes = values[len(SCALARS) : FIXED]
     return Survey(
         **scalars,

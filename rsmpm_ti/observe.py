@@ -50,10 +50,12 @@ def read_events(sim: Simulation) -> EventTable:
 
 
 def take_snapshot(sim: Simulation, time: float) -> Snapshot:
-    """Copy the particles out, in the order of their ids."""
+    """Copy the particles out, in the order of their ids, without those that were dropped."""
     particles = sim.particles
-    order = np.argsort(particles.id.to_numpy(), kind="stable")
-    n = particles.count
+    ids = particles.id.to_numpy()
+    order = np.argsort(ids, kind="stable")
+    order = order[particles.volume.to_numpy()[order] != 0.0]
+    n = len(order)
 
     def column(field):
         return field.to_numpy()[order].astype(np.float64)
@@ -69,7 +71,9 @@ def take_snapshot(sim: Simulation, time: float) -> Snapshot:
     if particles.breaks:
         mode = (particles.failed if particles.cracks else particles.mode).to_numpy()[order].astype(np.int8)
         events = read_events(sim)
-        failure_time[events.id] = events.time
+        of_id = np.full(particles.count, np.nan)
+        of_id[events.id] = events.time
+        failure_time = of_id[ids[order]]
     margin, governs, damage = (values[order] for values in margins(sim))
     aperture, crack_angle = np.zeros(n), np.full(n, np.nan)
     if particles.cracks:
@@ -78,6 +82,7 @@ def take_snapshot(sim: Simulation, time: float) -> Snapshot:
         crack_angle[begun] = np.degrees(column(particles.crack_angle)[begun]) % 180.0
     return Snapshot(
         time=time,
+        id=ids[order],
         x=column(particles.reference) + u,
         displacement=u,
         velocity=column(particles.v),
@@ -179,7 +184,8 @@ def guard(sim: Simulation, clock: Clock, survey: Survey) -> None:
     if survey.sick:
         raise UnstableRun(
             f"{survey.sick} particles are not finite or left the domain {at}{where}; likely cause: a time step too "
-            f"long for this loading, or fragments flying off; lower schedule.cfl, or enlarge the domain"
+            f"long for this loading, or fragments flying off; lower schedule.cfl, enlarge the domain, or take "
+            f"domain.outside = drop"
         )
     if survey.J_min < J_BOUNDS[0] or survey.J_max > J_BOUNDS[1]:
         raise UnstableRun(

@@ -215,7 +215,7 @@ class Run:
         from rsmpm_ti.observe import take_snapshot
 
         start = time.perf_counter()
-        share = self.clock.step / self.clock.total
+        share = self.clock.share
         frame = self.timetable.frame_due(share, self.history.failed)
         vtu = self.timetable.vtu_due(share)
         if frame or vtu:
@@ -245,7 +245,7 @@ class Run:
     def _progress(self) -> Progress:
         row = self.history.rows[-1]
         return Progress(
-            share=self.clock.step / self.clock.total,
+            share=self.clock.share,
             time=row[0],
             strain=row[1],
             stress=0.5 * (row[2] + row[3]),
@@ -291,9 +291,10 @@ class Run:
             "painting_s": self.painting_s,
             "painting_cpu_s": writer.cpu_s if writer is not None else 0.0,
             "particle_steps_per_s": speed,
-            "time_scale": self.scene.loading.time_scale,
+            "time_scale": self.scene.time_scale,
             **summarise(self.scene, history, events, self.history.energy_start),
             **fracture.numbers(),
+            **self.drive.dropped.numbers(),
             "stopped": stopped,
             "warning": writer.warning if writer is not None else "",
         }

@@ -55,7 +55,7 @@ def write_record(out: Path, scene: Scene, name: str, precision: str) -> None:
     seeds = [getattr(body.seeding, "seed", None) for body in scene.bodies]
     record = {
         "rsmpm_ti": __version__, "name": name, "precision": precision, "seeds": seeds, "machine": machine(),
-        "scene": to_plain(scene),
+        "time_scale": scene.time_scale, "scene": to_plain(scene),
     }  # fmt: skip
     write_json(out / "scene.json", record)
 

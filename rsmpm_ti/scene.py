@@ -7,6 +7,7 @@ from pathlib import Path
 
 from rsmpm_ti.errors import SceneError, UnstableRun
 from rsmpm_ti.library import available, find, keywords_of, load_scene, scene_name
+from rsmpm_ti.quasi_static import estimate
 from rsmpm_ti.spec import Scene
 
 QUICK_FRAMES, QUICK_ROWS = 10, 250
@@ -84,11 +85,23 @@ def describe(scene: Scene) -> str:
         ("grid nodes", f"{nodes} ({scene.domain.grid}), dx = {1e3 * scene.domain.dx:g} mm"),
         ("memory", f"about {memory:.0f} MB"),
         ("scheme", f"{scene.order}, {type(scene.shape).__name__}, {type(scene.transfer).__name__}"),
-        ("dt", f"{scene.dt:.4g} s (mass scaling by time_scale = {scene.loading.time_scale:g})"),
+        ("dt", f"{scene.dt:.4g} s (mass scaling by time_scale = {scene.time_scale:g})"),
+        *expectation(scene),
         ("steps", f"{scene.steps} to t = {1e3 * scene.t_end:.4g} ms"),
         ("estimate", f"about {seconds:.0f} s of solving, and painting"),
     )
     return "\n".join(f"{name:<12}{value}" for name, value in rows)
+
+
+def expectation(scene: Scene) -> tuple[tuple[str, str], ...]:
+    """Why 'auto' takes the time scale that it takes; nothing where a number is given."""
+    if scene.loading.time_scale != "auto":
+        return ()
+    found = estimate(scene)
+    error = 100.0 * found.error(scene.time_scale)
+    wanted = "" if error <= 100.1 * scene.loading.quasi_static else ", more than asked for even at the true density"
+    text = f"by first failure, expected at {found.stress / 1e6:.3g} MPa, inertia adds up to {error:.2g} %{wanted}"
+    return (("time_scale", text),)
 
 
 def list_scenes() -> str:
@@ -186,6 +199,8 @@ def report(result) -> str:
         )
         if s["platen_imbalance"] > 0.01:
             lines.append("warning: above 1 % the loading is not quasi-static; lower loading.time_scale or the speed")
+    if s["dropped"]:
+        lines.append(f"{s['dropped']} particles left the domain with {s['dropped_energy_J']:.3g} J and were dropped")
     if result.stopped:
         lines.append(f"stopped early: {result.stopped}; everything up to there is written; go on with --resume")
     if s["warning"]:

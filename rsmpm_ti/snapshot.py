@@ -33,10 +33,12 @@ MODE_NAMES = ("intact", "tension", "shear")
 class Snapshot:
     """Particles at one instant, in the order of their ids, which is the order in which they were seeded.
 
+    Those that have left the domain and were dropped are not among them.
     Shapes: n particles in dim dimensions. Stress is Cauchy, tension positive.
     """
 
     time: float  # [s]
+    id: np.ndarray  # ascending, int [n]
     x: np.ndarray  # current positions [m], [n, dim]
     displacement: np.ndarray  # [m], [n, dim]
     velocity: np.ndarray  # [m/s], [n, dim]

@@ -30,10 +30,14 @@ def reorder(sim: ti.template()):
 
 
 def sort_particles(sim: Simulation) -> None:
-    """Put particles into cell order; ties keep their order, so the result does not depend on threads."""
+    """Put particles into cell order; ties keep their order, so the result does not depend on threads.
+
+    Dropped particles, which have no volume, come last, and passes end before them.
+    """
     cell_keys(sim)
     key = sim.particles.key.to_numpy()
-    order = np.argsort(key, kind="stable").astype(np.int32)
+    gone = sim.particles.volume.to_numpy() == 0.0 if sim.drops else np.zeros(len(key), dtype=bool)
+    order = np.lexsort((key, gone)).astype(np.int32)
     if not np.array_equal(order, np.arange(len(order))):
         sim.particles.order.from_numpy(order)
         reorder(sim)
@@ -43,5 +47,8 @@ def sort_particles(sim: Simulation) -> None:
 
 
 def first_rows(sim: Simulation) -> np.ndarray:
-    """Row of cells along the first axis in which each particle was at the last sort, [n], ascending."""
-    return sim.particles.key.to_numpy() // int(np.prod(sim.grid.nodes[1:]))
+    """Row of cells along the first axis in which each particle was at the last sort, ascending; not of dropped ones."""
+    key = sim.particles.key.to_numpy()
+    if sim.drops:
+        key = key[: np.count_nonzero(sim.particles.volume.to_numpy())]
+    return key // int(np.prod(sim.grid.nodes[1:]))

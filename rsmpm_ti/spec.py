@@ -5,6 +5,7 @@
 
 import math
 from dataclasses import dataclass, field, replace
+from functools import cached_property
 
 import numpy as np
 
@@ -13,30 +14,27 @@ from rsmpm_ti.confinement import check_confined_rock, check_confinement
 from rsmpm_ti.directional import check_cracks
 from rsmpm_ti.errors import SceneError, refuse
 from rsmpm_ti.laws import Rock, Unbreakable
+from rsmpm_ti.quasi_static import LARGEST, LEAST_TRANSITS, estimate
 from rsmpm_ti.regions import Region, check_coordinates, slits_of
 from rsmpm_ti.seeding import Jittered, Lattice, Seeds, check_slit
 from rsmpm_ti.shape import Gimp, Linear, QuadraticBSpline
 from rsmpm_ti.starts import Affine, AtRest, Press, Ramp
+from rsmpm_ti.time_step import MOST, check_step
 from rsmpm_ti.transfer import Apic, PicFlip
-
-PAPER_DT = 1.91e-5
-"""The time step the paper prints [s]; a hundred times what its grid allows (paper sec. 4.1)."""
-
-USL_CFL = 0.6
-"""Smallest stability limit of usl over offsets and shape functions other than linear, in units of dx/c_p."""
-
-MOST = 2_000_000_000
-"""Most particles, grid nodes and steps: 32-bit numbers count them, and no machine here would hold or finish more."""
 
 
 @dataclass(frozen=True, kw_only=True)
 class Domain:
-    """The background grid: a box of cells of edge dx [m]; `grid` is 'dense', 'sparse' or 'auto' (by occupancy)."""
+    """The background grid: a box of cells of edge dx [m]; `grid` is 'dense', 'sparse' or 'auto' (by occupancy).
+
+    A particle that flies more than two cells beyond it ends the run, or with outside = 'drop' is taken out of it.
+    """
 
     lower: tuple[float, ...]
     upper: tuple[float, ...]
     dx: float
     grid: str = "dense"
+    outside: str = "stop"
 
     def __post_init__(self):
         if not (math.isfinite(self.dx) and self.dx > 0.0):
@@ -50,6 +48,8 @@ class Domain:
             raise refuse("domain.upper", self.upper, f"at least one cell above domain.lower = {self.lower}")
         if self.grid not in ("dense", "sparse", "auto"):
             raise refuse("domain.grid", self.grid, "'dense', 'sparse' or 'auto'")
+        if self.outside not in ("stop", "drop"):
+            raise refuse("domain.outside", self.outside, "'stop' or 'drop'")
         nodes = math.prod(edge / float(self.dx) + 1.0 for edge in edges)
         if nodes > MOST:
             raise refuse("domain.dx", self.dx, f"such that the grid has at most {MOST:.3g} nodes, not {nodes:.3g}")
@@ -79,7 +79,9 @@ class Body:
 class Loading:
     """What drives the scene.
 
-    time_scale k multiplies the density by k^2 (mass scaling), so a quasi-static run takes 1/k of the steps.
+    time_scale k multiplies the density by k^2 (mass scaling), so a quasi-static run takes 1/k of the steps. 'auto' is
+    the largest k at which inertia is expected to make up at most `quasi_static` of the load at first failure: see
+    `quasi_static.py`, and `Scene.time_scale` for the number.
     `width` is the loaded length [m] (area [m^2] in 3D) by which platen forces become nominal stress.
     body_force is an acceleration [m/s^2]; mass scaling leaves the force it makes unchanged. `force_field` is one that
     depends on place and time: an object with a ti.func `acceleration(X, t)` of a particle's initial position [m] and
@@ -89,15 +91,20 @@ class Loading:
 
     boundaries: tuple[Platen | Wall | Fixed, ...] = ()
     start: Affine | Ramp | Press | AtRest = AtRest()
-    time_scale: float = 1.0
+    time_scale: float | str = 1.0
+    quasi_static: float = 0.01
     body_force: tuple[float, ...] | None = None
     force_field: object | None = None
     width: float | None = None
     confinement: float = 0.0
 
     def __post_init__(self):
-        if not (math.isfinite(self.time_scale) and 1.0 <= self.time_scale <= 1000.0):
-            raise refuse("loading.time_scale", self.time_scale, "in [1, 1000]", "1 is the true density")
+        number = isinstance(self.time_scale, (int, float)) and 1.0 <= self.time_scale <= LARGEST
+        if not (number or self.time_scale == "auto"):
+            allowed = f"in [1, {LARGEST:g}] or 'auto'"
+            raise refuse("loading.time_scale", self.time_scale, allowed, "1 is the true density")
+        if not 1e-6 <= self.quasi_static <= 1.0:
+            raise refuse("loading.quasi_static", self.quasi_static, "in [1e-6, 1]", "it is a share of the load")
         if self.body_force is not None and not all(map(math.isfinite, self.body_force)):
             raise refuse("loading.body_force", self.body_force, "finite components in m/s^2")
         if self.force_field is not None and not callable(getattr(self.force_field, "acceleration", None)):
@@ -133,7 +140,8 @@ class Loading:
 class Schedule:
     """How long, and in what steps. Give `strain_end` (platen strain, compression positive) or `t_end` [s].
 
-    dt = cfl dx/c_p unless `dt` [s] is given. `rows` is about how many rows the history gets.
+    dt = cfl dx/c_p unless `dt` [s] is given. `rows` is about how many rows the history gets. adaptive: steps shrink as
+    particles move and swell, dt c_p/(c + |v|), for impacts; the number of steps is then not known beforehand.
     """
 
     strain_end: float | None = None
@@ -141,6 +149,7 @@ class Schedule:
     cfl: float = 0.5
     dt: float | None = None
     rows: int = 1000
+    adaptive: bool = False
 
     def __post_init__(self):
         if (self.strain_end is None) == (self.t_end is None):
@@ -214,7 +223,7 @@ class Scene:
         self._check_bodies()
         self._check_loading()
         check_cracks(self.rock, self.shape, self.dim, self.domain.dx)
-        self._check_step()
+        check_step(self)
 
     def _check_bodies(self) -> None:
         lower, upper = np.array(self.domain.lower), np.array(self.domain.upper)
@@ -268,48 +277,30 @@ class Scene:
             raise SceneError("start = Press stops the platens itself: give t_end, hold included, no strain_end")
         if isinstance(loading.start, (Ramp, Press)) and loading.platens:
             transits = loading.start.time * self.wave_speed / loading.height
-            if transits < 5.0:
-                least = f"at least {5.0 * loading.height / self.wave_speed:.4g} s, 5 wave transits"
+            if transits < LEAST_TRANSITS * (1.0 - 1e-9):
+                least = f"at least {LEAST_TRANSITS * loading.height / self.wave_speed:.4g} s, 5 wave transits"
                 raise refuse("start.time", loading.start.time, least)
-
-    def _check_step(self) -> None:
-        limit = (USL_CFL if self.order == "usl" else self.shape.stable_cfl) * self.domain.dx / self.wave_speed
-        transit = self.domain.dx / self.wave_speed
-        true_transit = self.domain.dx / self.rock.wave_speed()  # without mass scaling: what the paper's digits are
-        if 0.0 < self.dt <= limit:
-            name = "t_end" if self.schedule.strain_end is None else "strain_end"
-            if not self.t_end / self.dt <= MOST:
-                most = f"at most {MOST:.3g} steps of {self.dt:.4g} s, not {self.t_end / self.dt:.3g}"
-                raise refuse(f"schedule.{name}", getattr(self.schedule, name), most)
-            return
-        if self.schedule.dt is not None and math.isclose(self.schedule.dt, PAPER_DT, rel_tol=0.01):
-            raise SceneError(
-                f"schedule.dt = {self.schedule.dt:g} s is refused: the paper prints this value, but it is "
-                f"{self.schedule.dt / true_transit:.0f} times dx/c_p = {true_transit:.5g} s, the time a P-wave needs "
-                f"for one cell; its digits are those of dx/c_p, so its exponent or unit is wrong; leave dt out or use "
-                f"at most {limit:.4g} s"
-            )
-        given = "schedule.dt" if self.schedule.dt is not None else "schedule.cfl"
-        raise refuse(
-            given,
-            self.schedule.dt if self.schedule.dt is not None else self.schedule.cfl,
-            f"such that dt = {self.dt:.4g} s is positive and at most {limit:.4g} s (dx/c_p = {transit:.4g} s)",
-            f"use cfl <= {limit / transit:.2f}",
-        )
 
     @property
     def dim(self) -> int:
         return self.domain.dim
 
+    @cached_property
+    def time_scale(self) -> float:
+        """The number: `loading.time_scale`, or what 'auto' comes to. Raises SceneError where 'auto' has no meaning."""
+        if self.loading.time_scale == "auto":
+            return estimate(self).largest(self.loading.quasi_static)
+        return self.loading.time_scale
+
     @property
     def wave_speed(self) -> float:
         """P-wave speed with mass scaling [m/s]."""
-        return self.rock.wave_speed(self.loading.time_scale)
+        return self.rock.wave_speed(self.time_scale)
 
     @property
     def density(self) -> float:
         """Density with mass scaling [kg/m^3]."""
-        return self.rock.density * self.loading.time_scale**2
+        return self.rock.density * self.time_scale**2
 
     @property
     def dt(self) -> float:
@@ -324,6 +315,7 @@ class Scene:
 
     @property
     def steps(self) -> int:
+        """Of this dt: with an adaptive schedule they become more."""
         return max(1, math.ceil(self.t_end / self.dt - 1e-9))
 
     def particles(self) -> list[Seeds]:

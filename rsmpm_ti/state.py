@@ -201,8 +201,10 @@ SCALARS = (
     "speed",
     "J_min",
     "J_max",
+    "J_intact",
     "sick",
     "sick_id",
+    "outside",
     "strays",
     "far_strays",
     "work",
@@ -245,11 +247,12 @@ class Simulation:
         # mass scaling must leave the weight of a body unchanged, so its acceleration shrinks as its density grows
         force = scene.loading.body_force or (0.0,) * scene.dim
         self.heavy = any(component != 0.0 for component in force)
-        self.lightness = 1.0 / scene.loading.time_scale**2
+        self.lightness = 1.0 / scene.time_scale**2
         self.acceleration = tuple(component * self.lightness for component in force)
         self.force_field = scene.loading.force_field
         self.driven = self.force_field is not None
         self.grid = Grid(scene)
+        self.drops = scene.domain.outside == "drop"
         count = sum(len(body.x) for body in seeds)
         if count >= 2**31:
             raise SceneError(f"{count} particles are more than 2^31 - 1; use a larger dx or fewer particles per axis")

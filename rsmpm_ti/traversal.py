@@ -76,7 +76,7 @@ class Slabs:
         field[i] = field[i] + value
 
     def refresh(self, first_row) -> None:
-        """`first_row`: NumPy base row of every particle, sorted."""
+        """`first_row`: NumPy base row of every particle that takes part, sorted; those that do not lie behind them."""
         rows = [int(first_row[0])]
         for slab in range(1, self.count):
             fair = int(first_row[len(first_row) * slab // self.count])
@@ -113,7 +113,7 @@ class Single:
         field[i] = field[i] + value
 
     def refresh(self, first_row) -> None:
-        pass
+        self.stop[None] = len(first_row)
 
 
 @ti.data_oriented
@@ -126,7 +126,8 @@ class Chunks:
     size = 4
 
     def __init__(self, particle_count: int):
-        self.particle_count = particle_count
+        self.stop = ti.field(ti.i32, ())
+        self.stop[None] = particle_count
         self.items = self.count = -(-particle_count // self.size)
 
     def ticket(self, passes: int = 1) -> int:
@@ -138,14 +139,14 @@ class Chunks:
 
     @ti.func
     def span(self, t, part, ticket):
-        return t * self.size, ti.min((t + 1) * self.size, self.particle_count), t
+        return t * self.size, ti.min((t + 1) * self.size, self.stop[None]), t
 
     @ti.func
     def add(self, field: ti.template(), i, value):
         field[i] += value
 
     def refresh(self, first_row) -> None:
-        pass
+        self.stop[None] = len(first_row)
 
 
 def traversal(particle_count: int, gpu: bool, deterministic: bool) -> Slabs | Single | Chunks:

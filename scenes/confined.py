@@ -24,7 +24,7 @@ def scene(
     dx: float = 0.5 * mm,
     seed: int = 1,
     strain_end: float = 1.0e-3,
-    time_scale: float = 16.0,
+    time_scale: float | str = 16.0,
 ) -> Scene:
     flaw = Slit(centre=(25.0 * mm, 50.0 * mm), length=flaw_length, width=flaw_width, angle=flaw_angle, rounded=True)
     block = Box(lower=(0.0, 0.0), upper=(50.0 * mm, 100.0 * mm))

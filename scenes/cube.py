@@ -17,7 +17,7 @@ def scene(
     flaw_width: float = 1.5 * mm,
     dx: float = 0.5 * mm,
     strain_end: float = 2.5e-4,
-    time_scale: float = 5.0,
+    time_scale: float | str = 5.0,
 ) -> Scene:
     rock = Rock(
         density=2600.0,

@@ -26,7 +26,7 @@ def scene(
     dx: float = 0.5 * mm,
     seed: int = 1,
     strain_end: float = 8.0e-4,
-    time_scale: float = 16.0,
+    time_scale: float | str = 16.0,
 ) -> Scene:
     rock = lab_rock(G_f_I=G_f_I, G_f_II=G_f_II, residual_friction_angle=residual_friction_angle, length=length)
     flaw = Slit(centre=(25.0 * mm, 50.0 * mm), length=flaw_length, width=flaw_width, angle=flaw_angle, rounded=True)

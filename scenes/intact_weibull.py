@@ -21,7 +21,7 @@ def scene(
     correlation_length: float = 2.0 * mm,
     dx: float = 0.5 * mm,
     strain_end: float = 1.2e-3,
-    time_scale: float = 10.0,
+    time_scale: float | str = 10.0,
 ) -> Scene:
     strength = Weibull(
         shape=weibull_modulus,

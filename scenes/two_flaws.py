@@ -27,7 +27,7 @@ def scene(
     dx: float = 0.5 * mm,
     seed: int = 1,
     strain_end: float = 9.0e-4,
-    time_scale: float = 16.0,
+    time_scale: float | str = 16.0,
 ) -> Scene:
     along, across = math.radians(flaw_angle), math.radians(flaw_angle + bridging_angle)
     # from the specimen's centre to the centre of the upper flaw: half the ligament, then half the flaw

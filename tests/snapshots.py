@@ -13,6 +13,7 @@ def snapshot_of(x: np.ndarray, mode=None, **fields) -> Snapshot:
     mode = np.zeros(n, dtype=np.int8) if mode is None else np.asarray(mode, dtype=np.int8)
     unloaded = Snapshot(
         time=1e-3,
+        id=np.arange(n),
         x=x,
         displacement=np.zeros_like(x),
         velocity=np.zeros_like(x),

@@ -1,5 +1,7 @@
 """Cracks among made-up failures: which there are, where they began, how fast they grew and how far they opened."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from broken_bands import SPACING, failures, history, lattice, scattered, snapshot, strip
@@ -267,6 +269,18 @@ def test_opening_follows_the_crack_where_the_specimen_has_moved():
     flown = u + (0.3, -0.1)
     (found,) = openings(measured(bands, tips=()), bands, snapshot(reference + flown, failed, displacement=flown), DX)
     np.testing.assert_allclose(np.nanmean(found[:, 0]), OPENING, rtol=0.02)
+
+
+def test_opening_is_found_though_particles_of_the_crack_have_left_the_domain():
+    """The same crack; every third of its particles is gone, then all of them."""
+    reference = scattered(lattice((0.0, 0.0), (0.02, 0.02)))
+    u, failed = split_block(0.0, 3.0 * SPACING, reference)
+    bands, flown, n = failures((reference + u)[failed], ids=np.flatnonzero(failed)), u + (0.3, -0.1), np.arange(len(u))
+    cracks = measured(bands, tips=())
+    for gone, opening in ((failed & (n % 3 == 0), OPENING), (failed, np.nan)):
+        left = snapshot((reference + flown)[~gone], failed[~gone], displacement=flown[~gone])
+        (found,) = openings(cracks, bands, replace(left, id=n[~gone]), DX)
+        np.testing.assert_allclose(found[2:-2, 0], opening, rtol=0.04)
 
 
 def test_closed_crack_has_no_opening():

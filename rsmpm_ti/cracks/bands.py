@@ -116,7 +116,7 @@ def openings(cracks: list[Crack], events, snapshot: Snapshot, dx: float) -> list
     """Opening and slip at each point of each crack's path at the snapshot, list of [k, 2] [m] (see `aperture.jumps`).
 
     Paths are places at failure, so they are first taken back to where their particles were seeded, as the intact
-    particles are.
+    particles are, by those of them that have not left the domain; NaN where all have.
     """
     whole = (snapshot.failure_mode == INTACT) & np.isfinite(snapshot.x).all(axis=1)
     displacement = snapshot.displacement[whole]
@@ -124,7 +124,12 @@ def openings(cracks: list[Crack], events, snapshot: Snapshot, dx: float) -> list
     found = []
     for crack in cracks:
         x, ids = events.x[crack.events], events.id[crack.events]
-        moved = np.nan_to_num(x - (snapshot.x[ids] - snapshot.displacement[ids]))
-        nearest = cKDTree(x).query(crack.course.path)[1]
+        kept = np.isin(ids, snapshot.id)
+        if not kept.any():
+            found.append(np.full_like(crack.course.path, np.nan))
+            continue
+        rows = np.searchsorted(snapshot.id, ids[kept])
+        moved = np.nan_to_num(x[kept] - (snapshot.x[rows] - snapshot.displacement[rows]))
+        nearest = cKDTree(x[kept]).query(crack.course.path)[1]
         found.append(jumps(crack.course.path - moved[nearest], intact, displacement, dx))
     return found

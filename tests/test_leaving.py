@@ -1,0 +1,100 @@
+"""What leaves the domain: the run ends, or what left is counted, booked and gone."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+import taichi as ti
+
+from rsmpm_ti.drive import Drive
+from rsmpm_ti.errors import SceneError, UnstableRun
+from rsmpm_ti.laws import Hooke, MohrCoulomb, Rock
+from rsmpm_ti.measure import survey
+from rsmpm_ti.observe import guard, take_snapshot
+from rsmpm_ti.regions import Box
+from rsmpm_ti.spec import Body, Domain, Loading, Scene, Schedule
+from rsmpm_ti.stepper import Clock
+
+DX, SPEED, UPPER = 1e-3, 100.0, 0.02
+BEYOND = 2.0 * DX
+"""How far a particle may fly beyond the domain."""
+
+CRITERION = MohrCoulomb(cohesion=5.95e6, friction_angle=40.0, tensile_strength=2e6)
+
+
+def flight(outside: str) -> Scene:
+    """Two blocks of 4 x 4 mm in free flight: one leaves the domain to the right, half of it in this time, one stays."""
+    leaving = Body(region=Box(lower=(0.014, 0.008), upper=(0.018, 0.012)), velocity=(SPEED, 0.25 * SPEED))
+    staying = Body(region=Box(lower=(0.004, 0.008), upper=(0.008, 0.012)), velocity=(0.1 * SPEED, 0.0))
+    return Scene(
+        title="flight",
+        domain=Domain(lower=(0.0, 0.0), upper=(UPPER, UPPER), dx=DX, outside=outside),
+        bodies=(leaving, staying),
+        rock=Rock(density=2600.0, elasticity=Hooke(E=17e9, nu=0.14), criterion=CRITERION),
+        loading=Loading(),
+        schedule=Schedule(t_end=6e-5),
+    )
+
+
+@pytest.mark.parametrize("threads", [1, pytest.param(2, marks=pytest.mark.validation)])
+def test_what_flies_off_is_dropped_and_the_rest_flies_on(restart_taichi, threads):
+    restart_taichi(ti.f64, threads)
+    scene = flight("drop")
+    drive = Drive(scene, scene.particles(), ti.f64)
+    particles, start = drive.sim.particles, drive.survey
+    x, v = np.empty((2, particles.count, 2))
+    ids = particles.id.to_numpy()
+    x[ids], v[ids] = particles.reference.to_numpy(), particles.v.to_numpy()
+    while not drive.clock.done:
+        drive.advance(10)
+        now = drive.survey
+        # round-off of some hundred additions, of numbers of this size: here and below
+        momentum, energy = now.momentum + drive.dropped.momentum, now.kinetic + now.elastic + now.dissipated
+        assert np.abs(momentum - start.momentum).max() < 1e-11 * abs(start.momentum[0])
+        assert energy == pytest.approx(start.kinetic, rel=1e-11)
+    way = v * drive.clock.time
+    left = (x + way)[:, 0] > UPPER + BEYOND
+    assert 0 < left.sum() < 64  # between the columns of the block
+    mass = 2600.0 * (0.5 * DX) ** 2
+    assert drive.dropped.count == left.sum()
+    assert drive.dropped.mass == pytest.approx(left.sum() * mass, rel=1e-12)
+    np.testing.assert_allclose(drive.dropped.momentum, mass * v[left].sum(axis=0), rtol=1e-11)
+    assert drive.dropped.energy == pytest.approx(0.5 * mass * (v[left] ** 2).sum(), rel=1e-10)
+    # the others, in the order of their ids, on a straight line at constant velocity, stressed by round-off strain only
+    snapshot = take_snapshot(drive.sim, drive.clock.time)
+    np.testing.assert_allclose(snapshot.x, (x + way)[~left], rtol=0.0, atol=1e-12 * UPPER)
+    np.testing.assert_allclose(snapshot.velocity, v[~left], rtol=0.0, atol=1e-10 * SPEED)
+    assert np.abs(snapshot.sigma).max() < 1e-9 * 17e9
+    assert now.failed_tension == now.failed_shear == now.sick == now.outside == 0
+    assert all(np.isfinite(column).all() for column in (snapshot.volume, snapshot.margin, snapshot.damage))
+    assert (snapshot.failure_mode == 0).all() and np.isnan(snapshot.failure_time).all()
+    if threads == 1:
+        everything_may_leave_or_end_the_run(drive)
+
+
+def everything_may_leave_or_end_the_run(drive: Drive) -> None:
+    """The same particles thrown on until none is left; and failed ones say nothing of the waves in intact rock."""
+    particles = drive.sim.particles
+    particles.J.fill(1.01)
+    drive.survey = survey(drive.sim)
+    assert drive.survey.J_intact == pytest.approx(1.01)
+    particles.mode.fill(1)
+    assert survey(drive.sim).J_intact == 0.0
+    particles.u.fill(UPPER)
+    drive.clock = Clock(drive.sim)
+    with pytest.raises(UnstableRun, match="every particle has left the domain; enlarge it"):
+        drive.advance(1)
+
+
+def test_without_drop_the_run_ends_and_says_so(restart_taichi):
+    restart_taichi(ti.f64, 1)
+    scene = flight("stop")
+    drive = Drive(scene, scene.particles(), ti.f64)
+    drive.sim.particles.u.fill(0.5 * UPPER)  # one block out of the domain, the other still in it
+    with pytest.raises(UnstableRun, match="64 particles .* left the domain at step 0.*domain.outside = drop"):
+        guard(drive.sim, drive.clock, survey(drive.sim))
+
+
+def test_what_is_neither_stop_nor_drop_is_refused():
+    with pytest.raises(SceneError, match="domain.outside = 'grow' is refused: it must be 'stop' or 'drop'"):
+        replace(flight("stop").domain, outside="grow")
