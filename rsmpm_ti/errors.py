@@ -15,6 +15,19 @@ class UnstableRun(RuntimeError):
     """
 
 
+MOST_SHOWN = 200
+"""Characters of a refused value that are shown: enough to know it again."""
+
+
 def refuse(field: str, value: object, allowed: str, remedy: str = "") -> SceneError:
     """The one form in which bad input is refused."""
-    return SceneError(f"{field} = {value!r} is refused: it must be {allowed}" + (f"; {remedy}" if remedy else ""))
+    return SceneError(f"{field} = {shown(value)} is refused: it must be {allowed}" + (f"; {remedy}" if remedy else ""))
+
+
+def shown(value: object) -> str:
+    """A value in one line of bounded length, whatever it is."""
+    try:
+        text = " ".join(repr(value).split())
+    except Exception:  # an integer of thousands of digits, or an object of a scene file that cannot show itself
+        text = f"<{type(value).__name__}>"
+    return text if len(text) <= MOST_SHOWN else f"{text[:MOST_SHOWN]}..."

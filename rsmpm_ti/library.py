@@ -13,7 +13,8 @@ from dataclasses import replace
 from pathlib import Path
 
 from rsmpm_ti.errors import SceneError
-from rsmpm_ti.record import KNOWN, entry_kinds, fits, members, phrase, read_scene
+from rsmpm_ti.kinds import entry_kinds, fits, members, phrase
+from rsmpm_ti.record import KNOWN, read_scene
 from rsmpm_ti.spec import Scene
 
 SHIPPED = Path(__file__).parent / "scenes"

@@ -1,11 +1,7 @@
-"""A scene as JSON and back, without executing anyone's code: names are looked up in a fixed list of classes.
-
-Also the one check that a value from outside, a text or JSON, is of the kind that its field is annotated with.
-"""
+"""A scene as JSON and back, without executing anyone's code: names are looked up in a fixed list of classes."""
 
 import dataclasses
 import json
-import types
 import typing
 
 from rsmpm_ti import (
@@ -23,6 +19,7 @@ from rsmpm_ti import (
     transfer,
 )
 from rsmpm_ti.errors import SceneError, refuse
+from rsmpm_ti.kinds import fits, phrase
 
 MODULES = (
     averaging, boundaries, directional, heterogeneity, laws, regions, seeding, shape, softening, spec, starts, transfer,
@@ -35,46 +32,6 @@ KNOWN = {
     if dataclasses.is_dataclass(thing) and isinstance(thing, type)
 }
 """Every class that a recorded scene may name."""
-
-PHRASES = {float: "a number", int: "an integer", bool: "true or false", str: "a text", types.NoneType: "none"}
-
-
-def members(wanted) -> tuple:
-    """The alternatives of an annotation: (A, B) of A | B, itself of anything else."""
-    return typing.get_args(wanted) if typing.get_origin(wanted) in (typing.Union, types.UnionType) else (wanted,)
-
-
-def fits(value, wanted) -> bool:
-    """Whether a value is what an annotation says. An integer will do for a number, a bool will not."""
-    if len(members(wanted)) > 1:
-        return any(fits(value, kind) for kind in members(wanted))
-    if typing.get_origin(wanted) is tuple:
-        if not isinstance(value, tuple):
-            return False
-        kinds = entry_kinds(wanted, len(value))
-        return len(kinds) == len(value) and all(map(fits, value, kinds))
-    if wanted in (int, float) and isinstance(value, int):
-        return not isinstance(value, bool) and (wanted is int or value.bit_length() < 1000)
-    return isinstance(value, wanted)
-
-
-def entry_kinds(wanted, length: int) -> tuple:
-    """The annotations of a tuple's entries, `length` of them where tuple[A, ...] leaves that open."""
-    kinds = next((typing.get_args(kind) for kind in members(wanted) if typing.get_origin(kind) is tuple), (object, ...))
-    return kinds[:1] * length if kinds[-1] is Ellipsis else kinds
-
-
-def phrase(wanted) -> str:
-    """What a user is told to give: 'Lattice or Jittered', 'a number or none', '2 numbers separated by commas'."""
-    if len(members(wanted)) > 1:
-        *most, last = map(phrase, members(wanted))
-        return f"{', '.join(most)} or {last}"
-    if typing.get_origin(wanted) is tuple:
-        kinds = typing.get_args(wanted)
-        if kinds[0] is not float:
-            return f"a list of {phrase(kinds[0])}"
-        return f"{'' if kinds[-1] is Ellipsis else f'{len(kinds)} '}numbers separated by commas"
-    return PHRASES.get(wanted) or wanted.__name__
 
 
 def to_plain(value):

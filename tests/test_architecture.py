@@ -12,11 +12,10 @@ ROOT = Path(__file__).resolve().parent.parent
 PACKAGE = ROOT / "rsmpm_ti"
 
 LAYERS = """
-    errors units snapshot tensors regions seeding heterogeneity shape transfer averaging softening directional laws
-    rocks confinement boundaries starts spec traversal grid state sorting stencil crack_stress material wall_nodes
-    node_update kernels
-    smoothing tracking margin measure stepper observe drive nominal cracks summary output fracture record paint frames
-    library run scene verify study bench
+    errors units snapshot kinds tensors regions seeding heterogeneity shape transfer averaging softening directional
+    laws rocks confinement boundaries starts consistency spec traversal grid state sorting stencil crack_stress
+    material wall_nodes node_update kernels smoothing tracking margin measure stepper observe drive nominal cracks
+    summary output fracture record paint frames library run scene verify study bench
 """.split()
 """A module imports only from modules to the left of its own name."""
 

@@ -1,0 +1,140 @@
+"""Whether the parts of a scene fit each other: bodies, loading, time step and what moves at the start.
+
+Everything is arithmetic on the parts; nothing is seeded. Each check raises SceneError, in one line.
+"""
+
+import math
+
+import numpy as np
+
+from rsmpm_ti.errors import SceneError, refuse
+from rsmpm_ti.shape import Gimp
+from rsmpm_ti.starts import Affine, Press, Ramp
+
+PAPER_DT = 1.91e-5
+"""The time step the paper prints [s]; a hundred times what its grid allows (paper sec. 4.1)."""
+
+USL_CFL = 0.6
+"""Smallest stability limit of usl over offsets and shape functions other than linear, in units of dx/c_p."""
+
+LEAST_CFL = 1e-6
+"""Smallest step over the time a wave needs for one cell: below it a run never ends and adds up round-off."""
+
+FASTEST = 0.4
+"""Largest way of a body or a boundary in one step [cells]: what a step may do to a particle, see `drive.SAFE_CELLS`."""
+
+MOST = 2_000_000_000
+"""Most particles, grid nodes and steps: 32-bit numbers count them, and no machine here would hold or finish more."""
+
+
+def check_bodies(scene) -> None:
+    lower, upper = np.array(scene.domain.lower), np.array(scene.domain.upper)
+    count = 0.0
+    for k, body in enumerate(scene.bodies):
+        low, high = body.region.bounds()
+        if len(low) != scene.dim:
+            raise SceneError(f"bodies[{k}].region has {len(low)} dimensions, domain has {scene.dim}")
+        slack = 1e-9 * (upper - lower)
+        if np.any(low < lower - slack) or np.any(high > upper + slack):
+            raise SceneError(
+                f"bodies[{k}].region from {low.tolist()} to {high.tolist()} m lies outside the domain from "
+                f"{list(scene.domain.lower)} to {list(scene.domain.upper)} m; enlarge the domain or move the body"
+            )
+        count += math.prod((high - low) / scene.domain.dx * body.seeding.particles_per_axis)
+        if body.velocity is not None and len(body.velocity) != scene.dim:
+            raise refuse(f"bodies[{k}].velocity", body.velocity, f"{scene.dim} components in m/s")
+        if isinstance(scene.shape, Gimp) and not math.isclose(
+            scene.shape.half_width, 0.5 / body.seeding.particles_per_axis
+        ):
+            fitting = f"{0.5 / body.seeding.particles_per_axis} for this seeding"
+            remedy = "particle domains would overlap or leave gaps"
+            raise refuse("shape.half_width", scene.shape.half_width, fitting, remedy)
+    if count > MOST:
+        most = f"such that bodies have at most {MOST:.3g} particles, not {count:.3g}"
+        raise refuse("domain.dx", scene.domain.dx, most)
+
+
+def check_loading(scene) -> None:
+    loading, domain = scene.loading, scene.domain
+    if loading.body_force is not None and len(loading.body_force) != scene.dim:
+        raise refuse("loading.body_force", loading.body_force, f"{scene.dim} components in m/s^2")
+    for k, boundary in enumerate(loading.boundaries):
+        if boundary.axis >= scene.dim:
+            raise refuse(f"boundaries[{k}].axis", boundary.axis, f"below the dimension {scene.dim}")
+        lower, upper = domain.lower[boundary.axis], domain.upper[boundary.axis]
+        slack = 0.5 * domain.dx
+        if not lower - slack <= boundary.position <= upper + slack:
+            raise refuse(f"boundaries[{k}].position", boundary.position, f"in the domain, in [{lower}, {upper}] m")
+        span = getattr(boundary, "span", None)
+        if span is not None:
+            across = 1 if boundary.axis == 0 else 0
+            if not (span[0] < domain.upper[across] and span[1] > domain.lower[across]):
+                edges = f"[{domain.lower[across]}, {domain.upper[across]}] m"
+                raise refuse(f"boundaries[{k}].span", span, f"an interval that meets the domain, {edges}")
+        cells = (boundary.position - domain.lower[boundary.axis]) / domain.dx
+        if abs(cells - round(cells)) > 1e-3:
+            nearest = f"the nearest is {domain.lower[boundary.axis] + round(cells) * domain.dx:.9g} m"
+            raise refuse(f"boundaries[{k}].position", boundary.position, "on a plane of grid nodes", nearest)
+    if scene.schedule.strain_end is not None or isinstance(loading.start, Affine):
+        if loading.platens is None:
+            raise SceneError("strain_end and the Affine start need two platens that face each other; give t_end")
+        if loading.width is None:
+            raise SceneError("loading.width is missing: platen forces need a loaded width to become stress")
+    if loading.platens and not loading.height > 0.0:
+        upper = loading.boundaries.index(loading.platens[1])
+        raise refuse(f"boundaries[{upper}].position", loading.platens[1].position, "above the lower platen's")
+    if scene.schedule.strain_end is not None and not loading.strain_rate * scene.schedule.strain_end > 0.0:
+        sign = f"of the sign of the platens' strain rate {loading.strain_rate:.6g} 1/s"
+        raise refuse("schedule.strain_end", scene.schedule.strain_end, sign)
+    if isinstance(loading.start, Press) and scene.schedule.strain_end is not None:
+        raise SceneError("start = Press stops the platens itself: give t_end, hold included, no strain_end")
+    if isinstance(loading.start, (Ramp, Press)) and loading.platens:
+        transits = loading.start.time * scene.wave_speed / loading.height
+        if transits < 5.0:
+            least = f"at least {5.0 * loading.height / scene.wave_speed:.4g} s, 5 wave transits"
+            raise refuse("start.time", loading.start.time, least)
+
+
+def check_step(scene) -> None:
+    limit = (USL_CFL if scene.order == "usl" else scene.shape.stable_cfl) * scene.domain.dx / scene.wave_speed
+    transit = scene.domain.dx / scene.wave_speed
+    true_transit = scene.domain.dx / scene.rock.wave_speed()  # without mass scaling: what the paper's digits are
+    if LEAST_CFL * transit <= scene.dt <= limit:
+        name = "t_end" if scene.schedule.strain_end is None else "strain_end"
+        count = scene.t_end / scene.dt
+        if not 1.0 - 1e-9 <= count <= MOST:
+            allowed = f"from 1 to {MOST:.3g} steps of {scene.dt:.4g} s, not {count:.3g}"
+            raise refuse(f"schedule.{name}", getattr(scene.schedule, name), allowed)
+        return
+    if scene.schedule.dt is not None and math.isclose(scene.schedule.dt, PAPER_DT, rel_tol=0.01):
+        raise SceneError(
+            f"schedule.dt = {scene.schedule.dt:g} s is refused: the paper prints this value, but it is "
+            f"{scene.schedule.dt / true_transit:.0f} times dx/c_p = {true_transit:.5g} s, the time a P-wave needs "
+            f"for one cell; its digits are those of dx/c_p, so its exponent or unit is wrong; leave dt out or use "
+            f"at most {limit:.4g} s"
+        )
+    given = "schedule.dt" if scene.schedule.dt is not None else "schedule.cfl"
+    raise refuse(
+        given,
+        scene.schedule.dt if scene.schedule.dt is not None else scene.schedule.cfl,
+        f"such that dt = {scene.dt:.4g} is in [{LEAST_CFL * transit:.4g}, {limit:.4g}] s (dx/c_p = {transit:.4g} s)",
+        f"use cfl <= {limit / transit:.2f}",
+    )
+
+
+def check_motion(scene) -> None:
+    """Nothing may start faster than a step can follow."""
+    most = FASTEST * scene.domain.dx / scene.dt
+    allowed = f"such that a step of {scene.dt:.4g} s moves nothing by more than {FASTEST:g} cells, {most:.4g} m/s"
+    for k, boundary in enumerate(scene.loading.boundaries):
+        if not abs(boundary.speed) <= most:
+            raise refuse(f"boundaries[{k}].speed", boundary.speed, allowed)
+    for k, body in enumerate(scene.bodies):
+        low, high = body.region.bounds()
+        flight, rim = math.hypot(*(body.velocity or ())), abs(body.spin) * 0.5 * math.hypot(*(high - low)[:2])
+        if not flight + rim <= most:
+            name = "velocity" if flight >= rim else "spin"
+            raise refuse(f"bodies[{k}].{name}", getattr(body, name), allowed)
+    pull = math.hypot(*(scene.loading.body_force or ())) / scene.loading.time_scale**2
+    if not pull * scene.dt <= most:
+        raise refuse("loading.body_force", scene.loading.body_force, allowed)
