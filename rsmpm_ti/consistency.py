@@ -7,7 +7,7 @@ import math
 
 import numpy as np
 
-from rsmpm_ti.errors import SceneError, refuse
+from rsmpm_ti.errors import SceneError, refuse, shown
 from rsmpm_ti.shape import Gimp
 from rsmpm_ti.starts import Affine, Press, Ramp
 
@@ -38,7 +38,8 @@ def check_bodies(scene) -> None:
         if np.any(low < lower - slack) or np.any(high > upper + slack):
             raise SceneError(
                 f"bodies[{k}].region from {low.tolist()} to {high.tolist()} m lies outside the domain from "
-                f"{list(scene.domain.lower)} to {list(scene.domain.upper)} m; enlarge the domain or move the body"
+                f"{list(scene.domain.lower)} to {list(scene.domain.upper)} m; enlarge the domain or move the body, "
+                f"{shown(body.region)}"
             )
         count += math.prod((high - low) / scene.domain.dx * body.seeding.particles_per_axis)
         if body.velocity is not None and len(body.velocity) != scene.dim:
@@ -64,7 +65,8 @@ def check_loading(scene) -> None:
         lower, upper = domain.lower[boundary.axis], domain.upper[boundary.axis]
         slack = 0.5 * domain.dx
         if not lower - slack <= boundary.position <= upper + slack:
-            raise refuse(f"boundaries[{k}].position", boundary.position, f"in the domain, in [{lower}, {upper}] m")
+            allowed = f"in the domain, along axis {boundary.axis} in [{lower}, {upper}] m"
+            raise refuse(f"boundaries[{k}].position", boundary.position, allowed)
         span = getattr(boundary, "span", None)
         if span is not None:
             across = 1 if boundary.axis == 0 else 0
@@ -73,18 +75,20 @@ def check_loading(scene) -> None:
                 raise refuse(f"boundaries[{k}].span", span, f"an interval that meets the domain, {edges}")
         cells = (boundary.position - domain.lower[boundary.axis]) / domain.dx
         if abs(cells - round(cells)) > 1e-3:
+            allowed = f"on a plane of grid nodes along axis {boundary.axis}"
             nearest = f"the nearest is {domain.lower[boundary.axis] + round(cells) * domain.dx:.9g} m"
-            raise refuse(f"boundaries[{k}].position", boundary.position, "on a plane of grid nodes", nearest)
+            raise refuse(f"boundaries[{k}].position", boundary.position, allowed, nearest)
     if scene.schedule.strain_end is not None or isinstance(loading.start, Affine):
         if loading.platens is None:
-            raise SceneError("strain_end and the Affine start need two platens that face each other; give t_end")
+            needed = "two platens that face each other in loading.boundaries"
+            raise SceneError(f"strain_end and the Affine start need {needed}; give t_end")
         if loading.width is None:
             raise SceneError("loading.width is missing: platen forces need a loaded width to become stress")
     if loading.platens and not loading.height > 0.0:
         upper = loading.boundaries.index(loading.platens[1])
         raise refuse(f"boundaries[{upper}].position", loading.platens[1].position, "above the lower platen's")
     if scene.schedule.strain_end is not None and not loading.strain_rate * scene.schedule.strain_end > 0.0:
-        sign = f"of the sign of the platens' strain rate {loading.strain_rate:.6g} 1/s"
+        sign = f"of the sign of the platens' strain rate, lower speed less upper speed, {loading.strain_rate:.6g} 1/s"
         raise refuse("schedule.strain_end", scene.schedule.strain_end, sign)
     if isinstance(loading.start, Press) and scene.schedule.strain_end is not None:
         raise SceneError("start = Press stops the platens itself: give t_end, hold included, no strain_end")
@@ -104,7 +108,10 @@ def check_step(scene) -> None:
         count = scene.t_end / scene.dt
         if not 1.0 - 1e-9 <= count <= MOST:
             allowed = f"from 1 to {MOST:.3g} steps of {scene.dt:.4g} s, not {count:.3g}"
-            raise refuse(f"schedule.{name}", getattr(scene.schedule, name), allowed)
+            causes = "cfl, dx, density, E, nu and time_scale"
+            if name == "strain_end":
+                causes += ", and the end from the platens' speed, position and start.time"
+            raise refuse(f"schedule.{name}", getattr(scene.schedule, name), allowed, f"a step follows from {causes}")
         return
     if scene.schedule.dt is not None and math.isclose(scene.schedule.dt, PAPER_DT, rel_tol=0.01):
         raise SceneError(

@@ -4,8 +4,12 @@
 class SceneError(ValueError):
     """A scene, option or file is refused before anything compiles (exit status 2).
 
-    The message is one line: field, value, allowed range, and what to do.
+    The message is one line: field, value, allowed range, and what to do. What a terminal would act on is escaped.
     """
+
+    def __init__(self, message: str):
+        line = " ".join(message.split())
+        super().__init__("".join(c if c.isprintable() else repr(c)[1:-1] for c in line))
 
 
 class UnstableRun(RuntimeError):
@@ -27,7 +31,11 @@ def refuse(field: str, value: object, allowed: str, remedy: str = "") -> SceneEr
 def shown(value: object) -> str:
     """A value in one line of bounded length, whatever it is."""
     try:
-        text = " ".join(repr(value).split())
+        return short(" ".join(repr(value).split()))
     except Exception:  # an integer of thousands of digits, or an object of a scene file that cannot show itself
-        text = f"<{type(value).__name__}>"
+        return f"<{type(value).__name__}>"
+
+
+def short(text: str) -> str:
+    """The beginning of a text from outside."""
     return text if len(text) <= MOST_SHOWN else f"{text[:MOST_SHOWN]}..."

@@ -125,7 +125,8 @@ class MohrCoulomb:
             raise refuse(
                 "criterion.tensile_strength",
                 self.tensile_strength,
-                f"at most the apex of the Mohr-Coulomb cone, c cot(phi) = {self.apex:.6g} Pa",
+                f"at most the apex of the Mohr-Coulomb cone, c cot(phi) = {self.apex:.6g} Pa for cohesion = "
+                f"{self.cohesion:g} Pa and friction_angle = {self.friction_angle:g} degrees",
                 "beyond it the cut-off would never govern",
             )
 

@@ -18,7 +18,7 @@ from rsmpm_ti import (
     starts,
     transfer,
 )
-from rsmpm_ti.errors import SceneError, refuse
+from rsmpm_ti.errors import SceneError, refuse, short, shown
 from rsmpm_ti.kinds import fits, phrase
 
 MODULES = (
@@ -52,34 +52,46 @@ def from_plain(value, where: str = "scene"):
         return value
     kind = KNOWN.get(str(value.get("type")))
     if kind is None:
-        raise SceneError(f"{where}: unknown type {value.get('type')!r}; known types are {', '.join(sorted(KNOWN))}")
+        raise SceneError(
+            f"{where}: unknown type {shown(value.get('type'))}; known types are {', '.join(sorted(KNOWN))}"
+        )
     wanted = typing.get_type_hints(kind)
     names = {f.name for f in dataclasses.fields(kind)}
     unknown = set(value) - names - {"type"}
     if unknown:
-        raise SceneError(f"{where}: {kind.__name__} has no field {sorted(unknown)}; it has {sorted(names)}")
+        raise SceneError(f"{where}: {kind.__name__} has no field {shown(sorted(unknown))}; it has {sorted(names)}")
     fields = {k: from_plain(v, f"{where}.{k}") for k, v in value.items() if k != "type"}
     for k, v in fields.items():
         if not fits(v, wanted[k]):
             raise refuse(f"{where}.{k}", v, phrase(wanted[k]))
     try:
         return kind(**fields)
-    except SceneError:
-        raise
+    except SceneError as error:
+        raise SceneError(f"{where}: {error}") from None
     except (TypeError, ValueError, AttributeError, ArithmeticError) as error:
         raise SceneError(f"{where}: {kind.__name__} cannot be built: {error}") from None
+
+
+def _once(pairs: list[tuple]) -> dict:
+    """An object of JSON, where the last of two equal keys would win without a word."""
+    found = dict(pairs)
+    if len(found) < len(pairs):
+        keys = [key for key, _ in pairs]
+        twice = next(key for key in keys if keys.count(key) > 1)
+        raise SceneError(f"scene: {shown(twice)} stands twice in one object; say it once")
+    return found
 
 
 def read_scene(path) -> spec.Scene:
     """A Scene from a recorded `scene.json` (its "scene" entry) or from the bare entry."""
     try:
         with open(path, encoding="utf-8") as file:
-            data = json.load(file)
+            data = json.load(file, object_pairs_hook=_once)
         scene = from_plain(data.get("scene", data) if isinstance(data, dict) else data)
     except SceneError:
         raise
     except (OSError, ValueError, RecursionError) as error:  # ValueError: no UTF-8, no JSON, or an endless integer
-        raise SceneError(f"{path} cannot be read as JSON: {error}") from None
+        raise SceneError(f"{path} cannot be read as JSON: {short(str(error))}") from None
     if not isinstance(scene, spec.Scene):
         raise SceneError(f"{path} holds a {type(scene).__name__}, not a Scene")
     return scene

@@ -10,7 +10,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from rsmpm_ti.errors import refuse
-from rsmpm_ti.kinds import check_kinds, check_positive
+from rsmpm_ti.kinds import LEAST, check_kinds, check_positive
 
 FARTHEST = 1e9
 """Largest coordinate and length [m]: beyond it a specimen is a mistake, and squares and node numbers overflow."""
@@ -61,8 +61,9 @@ class Box:
         check_kinds("box", self)
         check_coordinates("box.lower", self.lower)
         check_coordinates("box.upper", self.upper)
-        if len(self.lower) != len(self.upper) or not all(a < b for a, b in zip(self.lower, self.upper, strict=False)):
-            raise refuse("box.upper", self.upper, f"above box.lower = {self.lower} on every axis")
+        edges = [b - a for a, b in zip(self.lower, self.upper, strict=False)]
+        if len(self.lower) != len(self.upper) or not min(edges) >= LEAST:
+            raise refuse("box.upper", self.upper, f"above box.lower = {self.lower} by {LEAST:g} m on every axis")
 
     def contains(self, x: np.ndarray) -> np.ndarray:
         """x [n, dim] -> bool [n]."""

@@ -5,7 +5,7 @@ import sys
 from dataclasses import replace
 from pathlib import Path
 
-from rsmpm_ti.errors import SceneError, UnstableRun
+from rsmpm_ti.errors import SceneError, UnstableRun, shown
 from rsmpm_ti.library import available, find, keywords_of, load_scene, scene_name
 from rsmpm_ti.spec import Scene
 
@@ -48,7 +48,7 @@ def build(options: argparse.Namespace) -> Scene:
     for item in options.settings:
         name, separator, value = item.partition("=")
         if not separator or not name.strip():
-            raise SceneError(f"--set {item!r} is refused: write name=value")
+            raise SceneError(f"--set {shown(item)} is refused: write name=value")
         settings[name.strip()] = value.strip()
     scene = load_scene(options.scene, quick=options.quick, settings=settings)
     output = scene.output

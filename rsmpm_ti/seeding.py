@@ -151,7 +151,7 @@ class Jittered:
         """Particles of a region. Membership is decided before the move, so that faces stay smooth
         in the mean and the number of particles does not depend on the seed; no particle enters a slit."""
         lattice = Lattice(particles_per_axis=self.particles_per_axis, fitted=self.fitted).fill(region, origin, dx)
-        reach = self.amount * dx / self.particles_per_axis
+        reach = abs(self.amount) * dx / self.particles_per_axis
         moved = lattice.x + np.random.default_rng(self.seed).uniform(-reach, reach, lattice.x.shape)
         return Seeds(np.where(region.contains(moved)[:, None], moved, lattice.x), lattice.volume)
 
@@ -186,7 +186,7 @@ def check_slit(region, slit: Slit, seeding, shape, dx: float, origin: np.ndarray
     lower, upper = (bound[:2] for bound in region.bounds())
     low, high = slit.bounds()
     if np.any(low >= upper) or np.any(high <= lower):
-        box = f"within reach of its body, from {lower.tolist()} to {upper.tolist()} m"
+        box = f"in its body, whose lower and upper corners are {lower.tolist()} and {upper.tolist()} m"
         raise refuse("slit.centre", slit.centre, box, "it cuts nothing where it is")
     bridge = _bridge_of_width(region, slit, slit.width, seeding, shape, dx, origin)
     if bridge <= BRIDGE_LIMIT:

@@ -49,7 +49,8 @@ class Domain:
         check_coordinates("domain.upper", self.upper)
         edges = [float(b) - float(a) for a, b in zip(self.lower, self.upper, strict=True)]
         if not all(edge >= self.dx for edge in edges):
-            raise refuse("domain.upper", self.upper, f"at least one cell above domain.lower = {self.lower}")
+            allowed = f"at least one cell, dx = {self.dx}, above domain.lower = {self.lower}"
+            raise refuse("domain.upper", self.upper, allowed)
         if self.grid not in ("dense", "sparse", "auto"):
             raise refuse("domain.grid", self.grid, "'dense', 'sparse' or 'auto'")
         far = max(map(abs, (*self.lower, *self.upper)))
@@ -160,7 +161,7 @@ class Schedule:
                 check_positive(f"schedule.{name}", value, "time in seconds", least=1e-30)
         if self.strain_end is not None and not 0.0 < abs(self.strain_end) < 0.5:
             raise refuse("schedule.strain_end", self.strain_end, "a strain of size in (0, 0.5)")
-        check_positive("schedule.cfl", self.cfl, "share of the time a wave needs for one cell", LEAST_CFL, 2.0)
+        check_positive("schedule.cfl", self.cfl, "share of the time a wave needs for one cell", LEAST_CFL, 1e3)
         if not 1 <= self.rows <= 1_000_000:
             raise refuse("schedule.rows", self.rows, "a whole number from 1 to 1 000 000")
 

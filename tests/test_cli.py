@@ -1,18 +1,13 @@
 """The command line: what it lists and checks, and bad input refused in one line before anything compiles."""
 
-import contextlib
-import dataclasses
-import io
 import subprocess
 import sys
 
 import pytest
-from hypothesis import example, given, settings
-from hypothesis import strategies as st
 
 from rsmpm_ti.library import available, keywords_of, load_scene
 from rsmpm_ti.output import write_json
-from rsmpm_ti.record import KNOWN, to_plain
+from rsmpm_ti.record import to_plain
 from rsmpm_ti.scene import build, main, parser
 from rsmpm_ti.spec import Scene
 
@@ -247,51 +242,3 @@ def test_refused_command_ends_with_status_2_and_without_a_traceback(tmp_path):
     done = subprocess.run(code, cwd=root, capture_output=True, text=True, timeout=120)
     assert done.returncode == 2 and done.stdout == ""
     assert done.stderr.count("\n") == 1 and "elasticity.nu" in done.stderr
-
-
-def dotted_names(value, prefix: str = "") -> list[str]:
-    """Every dotted name below a value of a scene."""
-    if dataclasses.is_dataclass(value):
-        children = {f.name: getattr(value, f.name) for f in dataclasses.fields(value)}
-    elif isinstance(value, tuple):
-        children = {str(k): v for k, v in enumerate(value)}
-    else:
-        return []
-    return [name for k, v in children.items() for name in (prefix + k, *dotted_names(v, f"{prefix}{k}."))]
-
-
-SMALL = {"dx": 2e-3, "flaw_width": 6e-3}
-NAMES = [
-    *keywords_of(available()["cube"]),
-    *dotted_names(load_scene("cube", **SMALL)),
-    "nosuch",
-    "rock.",
-    ".",
-    "bodies.-1",
-]
-NUMBERS = st.one_of(
-    st.floats(), st.integers(), st.floats(-10.0, 10.0), st.integers(-3, 9), st.sampled_from([5e-324, 1.8e308, 2**31])
-).map(str)
-WORDS = st.sampled_from(["none", "true", "false", "nan", "-inf", "", "usl", "sparse", *sorted(KNOWN)])
-TEXTS = st.one_of(NUMBERS, WORDS, st.lists(NUMBERS, max_size=4).map(",".join), st.text(max_size=6))
-CELLS = st.sampled_from(["2e-3", "0.01", "1", "1e300", "1e-9", "5e-324", "0", "-1", "nan", "inf", "", "Box", "1,2"])
-SETTINGS = st.sampled_from(NAMES).flatmap(
-    lambda name: st.tuples(st.just(name), CELLS if name.endswith("dx") else TEXTS)
-)
-
-
-@settings(max_examples=200, derandomize=True, deadline=None)
-@given(SETTINGS)
-@example(("domain.upper", "1e6,1e6"))
-@example(("schedule.strain_end", "5e-324"))
-@example(("loading.boundaries.0.position", "0.1"))
-@example(("rock.criterion.friction_angle", "5e-324"))
-def test_any_setting_ends_with_status_0_or_2_and_at_most_one_line(setting):
-    """Cell sizes come from a list: a fine one is a fair request that takes long."""
-    out, err = io.StringIO(), io.StringIO()
-    small = [part for name, value in SMALL.items() for part in ("--set", f"{name}={value}")]
-    with contextlib.redirect_stdout(out), contextlib.redirect_stderr(err):
-        status = main(["cube", "--check", *small, "--set", "=".join(setting)])
-    message = err.getvalue()
-    assert (status, message.count("\n")) in ((0, 0), (2, 1)), message
-    assert status == 0 or (message.startswith("rsmpm_ti: ") and message.endswith("\n") and not out.getvalue())
