@@ -4,7 +4,7 @@ import math
 
 from rsmpm_ti.measure import survey
 from rsmpm_ti.observe import guard
-from rsmpm_ti.sorting import sort_particles
+from rsmpm_ti.sorting import first_rows, sort_particles
 from rsmpm_ti.spec import Scene
 from rsmpm_ti.state import Simulation
 from rsmpm_ti.stepper import Clock
@@ -19,11 +19,17 @@ SAFE_CELLS = 0.4
 class Drive:
     """Particles, clock and the latest survey of one scene. Taichi must have been started."""
 
-    def __init__(self, scene: Scene, seeds, real, gpu: bool = False):
-        """seeds: `scene.particles()`; real: ti.f64 or ti.f32."""
-        self.sim = Simulation(scene, seeds, real, gpu)
+    def __init__(self, scene: Scene, seeds, real, gpu: bool = False, deterministic: bool = False):
+        """seeds: `scene.particles()`; real: ti.f64 or ti.f32; deterministic: same bits with any number of threads."""
+        self.sim = Simulation(scene, seeds, real, gpu, deterministic)
         sort_particles(self.sim)
         self.clock = Clock(self.sim)
+        self.survey = survey(self.sim)
+
+    def look(self) -> None:
+        """Look at particles whose state, with the cells of their last sort, was put in from outside."""
+        self.sim.traversal.refresh(first_rows(self.sim))
+        self.sim.nodes.forget_empty()
         self.survey = survey(self.sim)
 
     def advance(self, steps: int) -> None:

@@ -1,26 +1,17 @@
-"""When to paint, and painting: frames at equal strain or time, more when failed particles jump; movie and VTU."""
+"""When to paint: frames at equal strain or time, more when failed particles jump. What to paint: limits and titles."""
 
 import math
-from concurrent.futures import ThreadPoolExecutor
+from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
 
 from rsmpm_ti.laws import MohrCoulomb
-from rsmpm_ti.output import write_pvd, write_vtu
-from rsmpm_ti.paint.figure import FramePainter, write_png
-from rsmpm_ti.paint.movie import Movie
-from rsmpm_ti.paint.summary import summary_picture
-from rsmpm_ti.snapshot import Snapshot
 from rsmpm_ti.softening import Brittle
 from rsmpm_ti.spec import Scene
 
 JUMP_SHARE, JUMP_GROWTH = 0.0003, 0.05
 """A frame is added when failures since the last one exceed this share of all particles and of all failures so far."""
-
-
-WAITING = 4
-"""Pictures or VTU files that may wait to be written."""
 
 
 class Timetable:
@@ -32,6 +23,14 @@ class Timetable:
         self._extra = self._frames  # jumps may at most double the number of frames
         self._next_frame = self._next_vtu = 0
         self._failed = 0.0
+
+    def state(self) -> dict[str, float]:
+        """What `resume` needs to go on where this one is."""
+        return {"frame": self._next_frame, "vtu": self._next_vtu, "extra": self._extra, "failed": self._failed}
+
+    def resume(self, state: dict[str, float]) -> None:
+        self._next_frame, self._next_vtu = state["frame"], state["vtu"]
+        self._extra, self._failed = state["extra"], state["failed"]
 
     def frame_due(self, progress: float, failed: float) -> bool:
         """progress: share of the run done, 0 to 1; failed: particles failed so far."""
@@ -54,73 +53,34 @@ class Timetable:
         return due
 
 
-class Gallery:
-    """Paints and writes the pictures of one run into `out`."""
+@dataclass(frozen=True, kw_only=True)
+class Commission:
+    """What is to be painted of one run, in plain values: they reach the process that paints.
 
-    def __init__(self, scene: Scene, name: str, out: Path, volume: float):
-        """volume: of all particles [m^dim], from which the end of the load axis is estimated."""
-        self._scene, self._name, self._out = scene, name, out
-        low, high = zip(*(body.region.bounds() for body in scene.bodies), strict=True)
-        lower, upper = np.min(low, axis=0)[:2], np.max(high, axis=0)[:2]
-        strain, load = load_limits(scene, volume)
-        shared = {
-            "lower": tuple(lower), "upper": tuple(upper), "stress_limit": stress_limit(scene, load),
-            "strain_limit": strain,
-            "load_limit": load, "backend": scene.output.painter,
-        }  # fmt: skip
-        kinds = ("stress", "cracks", "margin") if scene.output.margin else ("stress", "cracks")
-        self.painters = {kind: FramePainter(kind=kind, softens=softens(scene), **shared) for kind in kinds}
-        self.warning = ""
-        self._movie = None
-        if scene.output.movie:
-            try:
-                self._movie = Movie(out / f"{name}.mp4")
-            except RuntimeError as error:  # no encoder: frames still come
-                self.warning = str(error)
-        self._writer, self._pending = ThreadPoolExecutor(max_workers=1), []
-        self.count = 0
-        self._vtus: list[tuple[float, str]] = []
+    kinds: of frames; painters: keywords that all of them share; title: of summary.png; name: of the movie.
+    """
 
-    def frame(self, snapshot: Snapshot, history: np.ndarray) -> None:
-        images = {kind: painter.paint(snapshot, history, self.count) for kind, painter in self.painters.items()}
-        self._later(self._write_frame, images, self.count)
-        self.count += 1
+    kinds: tuple[str, ...]
+    painters: dict
+    title: str
+    name: str
+    movie: bool
+    out: Path
 
-    def _write_frame(self, images: dict[str, np.ndarray], number: int) -> None:
-        for kind, image in images.items():
-            write_png(self._out / "frames" / f"{kind}_{number:04d}.png", image, painter=self._scene.output.painter)
-        if self._movie is not None:
-            self._movie.add(images["stress"], images["cracks"])
 
-    def vtu(self, snapshot: Snapshot) -> None:
-        self._vtus.append((snapshot.time, f"particles_{len(self._vtus):04d}.vtu"))
-        self._later(self._write_vtu, snapshot, list(self._vtus))
-
-    def _write_vtu(self, snapshot: Snapshot, entries: list[tuple[float, str]]) -> None:
-        write_vtu(self._out / entries[-1][1], snapshot)
-        write_pvd(self._out / "particles.pvd", entries)
-
-    def _later(self, work, *arguments) -> None:
-        """Compressing and encoding go on beside the solver; at most a few pictures wait, so memory stays flat."""
-        while len(self._pending) >= WAITING:
-            self._pending.pop(0).result()
-        self._pending.append(self._writer.submit(work, *arguments))
-
-    def close(self, snapshot: Snapshot, history: np.ndarray, paths: list[np.ndarray], acoustic: np.ndarray) -> None:
-        """Finish what waits and the movie, paint summary.png, give the painters' memory back.
-
-        paths: lines of cracks, each [k, 2] [m]; acoustic: times of acoustic events, ascending [s].
-        """
-        for pending in self._pending:
-            pending.result()
-        self._writer.shutdown()
-        if self._movie is not None:
-            self._movie.close()
-        summary_picture(
-            self._out / "summary.png", snapshot, history, self.painters["cracks"], self._scene.title, paths, acoustic
-        )
-        for painter in self.painters.values():
-            painter.close()
+def commission(scene: Scene, name: str, out: Path, volume: float) -> Commission:
+    """volume: of all particles [m^dim], from which the end of the load axis is estimated."""
+    low, high = zip(*(body.region.bounds() for body in scene.bodies), strict=True)
+    lower, upper = np.min(low, axis=0)[:2], np.max(high, axis=0)[:2]
+    strain, load = load_limits(scene, volume)
+    painters = {
+        "lower": tuple(lower), "upper": tuple(upper), "stress_limit": stress_limit(scene, load),
+        "strain_limit": strain, "load_limit": load, "backend": scene.output.painter, "softens": softens(scene),
+    }  # fmt: skip
+    kinds = ("stress", "cracks", "margin") if scene.output.margin else ("stress", "cracks")
+    return Commission(
+        kinds=kinds, painters=painters, title=scene.title, name=name, movie=scene.output.movie, out=Path(out)
+    )
 
 
 def softens(scene: Scene) -> bool:

@@ -49,7 +49,8 @@ def _survey(sim: ti.template()):
     for k in range(1):
         clear_report(sim, k)
     particles, grid, rock, report = sim.particles, sim.grid, sim.rock, sim.report
-    for p in particles.key:
+    ti.loop_config(serialize=sim.traversal.ordered)
+    for p in range(particles.count):
         v = particles.v[p]
         m_p = sim.density * particles.volume[p]
         sigma, J = particles.sigma[p], particles.J[p]

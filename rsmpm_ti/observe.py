@@ -115,6 +115,16 @@ class History:
             self._platens = tuple(loading.boundaries.index(platen) for platen in loading.platens)
 
     @property
+    def baseline(self) -> dict[str, np.ndarray]:
+        """What the next row is counted from: energy of the start [J], impulses [N s] and time [s] of the last row."""
+        return {"energy_start": self._energy_start, "impulse": self._impulse, "time": self._time}
+
+    @baseline.setter
+    def baseline(self, kept: dict[str, np.ndarray]) -> None:
+        self._energy_start, self._time = float(kept["energy_start"]), float(kept["time"])
+        self._impulse = kept["impulse"]
+
+    @property
     def energy_start(self) -> float:
         """Kinetic and elastic energy with which the run started [J]."""
         return self._energy_start

@@ -118,7 +118,17 @@ def write_pvd(path: Path, entries: list[tuple[float, str]]) -> None:
         part.write_text(text, encoding="utf-8")
 
 
-def write_checkpoint(path: Path, arrays: dict[str, np.ndarray]) -> None:
-    """Arrays only, no pickle: loading a checkpoint runs nobody's code."""
-    with complete(path) as part, open(part, "wb") as file:
-        np.savez(file, **arrays)
+CHECKPOINTS = ("checkpoint.npz", "checkpoint.previous.npz")
+"""The latest and the one before, which is used where the latest is damaged."""
+
+
+def write_checkpoint(folder: Path, arrays: dict[str, np.ndarray]) -> None:
+    """Arrays only, no pickle: loading a checkpoint runs nobody's code. It is on the disk before it gets its name."""
+    latest, previous = (Path(folder) / name for name in CHECKPOINTS)
+    with complete(latest) as part:
+        with open(part, "wb") as file:
+            np.savez(file, **arrays)
+            file.flush()
+            os.fsync(file.fileno())
+        if latest.exists():
+            os.replace(latest, previous)

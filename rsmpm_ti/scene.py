@@ -37,6 +37,9 @@ def parser() -> argparse.ArgumentParser:
     p.add_argument("--arch", choices=("cpu", "cuda"), default="cpu")
     p.add_argument("--precision", choices=("f64", "f32"), default="f64")
     p.add_argument("--threads", type=int, metavar="N", help="CPU threads (default: all)")
+    p.add_argument("--deterministic", action="store_true", help="the same bits with any number of threads")
+    p.add_argument("--resume", action="store_true", help="go on from the checkpoint in the output folder")
+    p.add_argument("--checkpoint-every", type=float, default=60.0, metavar="S", help="seconds between checkpoints")
     p.add_argument("--list", action="store_true", help="list the scenes and their keywords")
     p.add_argument("--check", action="store_true", help="validate, print what would be run, and stop")
     return p
@@ -146,6 +149,7 @@ def run(scene: Scene, options: argparse.Namespace) -> int:
 
         result = simulate(
             scene, out=out, name=name, precision=options.precision, arch=options.arch, threads=options.threads,
+            deterministic=options.deterministic, resume=options.resume, checkpoint_every=options.checkpoint_every,
             progress=show,
         )  # fmt: skip
     print(report(result))
@@ -183,7 +187,9 @@ def report(result) -> str:
         if s["platen_imbalance"] > 0.01:
             lines.append("warning: above 1 % the loading is not quasi-static; lower loading.time_scale or the speed")
     if result.stopped:
-        lines.append(f"stopped early: {result.stopped}; everything up to there is written")
+        lines.append(f"stopped early: {result.stopped}; everything up to there is written; go on with --resume")
+    if s["warning"]:
+        lines.append(f"warning: {s['warning']}")
     lines.append(f"written to {result.out}")
     return "\n".join(lines)
 

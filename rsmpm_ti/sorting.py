@@ -38,12 +38,10 @@ def sort_particles(sim: Simulation) -> None:
         sim.particles.order.from_numpy(order)
         reorder(sim)
         cell_keys(sim)
-    sim.traversal.refresh(key[order] // int(np.prod(sim.grid.nodes[1:])))
+    sim.traversal.refresh(first_rows(sim))
     sim.nodes.forget_empty()
 
 
-def particle_arrays(sim: Simulation) -> dict[str, np.ndarray]:
-    """Every stored particle component as it lies in memory: what a checkpoint holds."""
-    particles = sim.particles
-    real = {f"real_{k}": c.to_numpy() for k, c in enumerate(particles.real_components)}
-    return real | {f"whole_{k}": c.to_numpy() for k, c in enumerate(particles.whole_components)}
+def first_rows(sim: Simulation) -> np.ndarray:
+    """Row of cells along the first axis in which each particle was at the last sort, [n], ascending."""
+    return sim.particles.key.to_numpy() // int(np.prod(sim.grid.nodes[1:]))

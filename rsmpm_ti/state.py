@@ -225,7 +225,7 @@ class Report:
 class Simulation:
     """Everything kernels need, as one object: a kernel launch then looks up one template argument, not ten."""
 
-    def __init__(self, scene: Scene, seeds: list[Seeds], real=ti.f64, gpu: bool = False):
+    def __init__(self, scene: Scene, seeds: list[Seeds], real=ti.f64, gpu: bool = False, deterministic: bool = False):
         self.scene, self.real, self.dim = scene, real, scene.dim
         self.rock, self.shape, self.transfer = scene.rock, scene.shape, scene.transfer
         self.boundaries = scene.loading.boundaries
@@ -250,9 +250,10 @@ class Simulation:
         if count >= 2**31:
             raise SceneError(f"{count} particles are more than 2^31 - 1; use a larger dx or fewer particles per axis")
         self.particles = Particles(scene, count, real)
-        self.traversal = traversal(count, gpu)
+        self.traversal = traversal(count, gpu, deterministic)
         self.nodes = Nodes(scene, self.grid, real, use_sparse_grid(scene, count))
-        self.nodes.serial = self.traversal.serial or (not gpu and math.prod(self.grid.nodes) < FEW_NODES)
+        few = not gpu and math.prod(self.grid.nodes) < FEW_NODES
+        self.nodes.serial = self.traversal.serial or self.traversal.ordered or few
         self.events, self.ledger = Events(scene, count, real), Ledger(scene, self.traversal.count)
         self.averaging = scene.rock.criterion.breaks and scene.rock.averaging.acts
         if self.averaging:

@@ -92,6 +92,13 @@ class Clock:
     def time(self) -> float:
         return self.step * self.dt
 
+    def state(self) -> dict[str, float]:
+        """What `resume` needs to go on where this clock is."""
+        return {"step": self.step, "strain": self.strain}
+
+    def resume(self, state: dict[str, float]) -> None:
+        self.step, self.strain = int(state["step"]), float(state["strain"])
+
     @property
     def done(self) -> bool:
         return self.step >= self.total

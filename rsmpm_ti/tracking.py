@@ -32,7 +32,8 @@ def judge(sim: ti.template()):
 def crack_most_overloaded(sim: ti.template(), time: ti.f64):
     """Start a crack in every particle that none of its neighbours exceeds."""
     particles = sim.particles
-    for p in particles.mode:
+    ti.loop_config(serialize=sim.traversal.ordered)  # the last of several new cracks beside a particle shades it
+    for p in range(particles.count):
         load = particles.overload[p]
         if load > 0.0:
             base = sim.grid.base(coordinates(sim, p), sim.shape)

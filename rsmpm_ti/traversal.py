@@ -16,24 +16,30 @@ SPREAD = 512
 """Taichi 1.7.4 runs a CPU range-for of 512 or fewer iterations on one thread, so each slab is given 512."""
 
 
+FIXED_SLABS = 8
+"""Slabs of a deterministic run: whatever the number of threads, sums are taken in one order. More threads are of no
+use to it."""
+
+
 @ti.data_oriented
 class Slabs:
-    """CPU, several threads: as many slabs of rows along the first axis, of about equally many particles.
+    """CPU: slabs of rows along the first axis, of about equally many particles, one for each thread, or a fixed number.
 
-    A thread begins with the first REACH rows of its slab and says when it has added them; it ends with the last ones,
-    for which it waits until the next slab has added its first. Nothing waits for a slab that waits: with two threads
-    or more, as this is made for, one that may go on is always running.
+    A slab's first REACH rows are added first, and then it is said that they are; its last ones wait until the next slab
+    has added its first. So every node takes its sums in one order. Slabs are begun from the last to the first, so that
+    none waits for one that has not been begun: that holds for any number of threads.
     """
 
     serial = False
     parts = 3  # first rows, most rows, last rows
     stride = block = SPREAD  # only every so many iterations of a loop have work
 
-    def __init__(self, threads: int):
-        self.count = threads
-        self.items = threads * SPREAD  # loop iterations
-        self.bounds = ti.field(ti.i32, (threads, self.parts + 1))  # first particle of each part, and end of the last
-        self.ready = ti.field(ti.i32, threads)  # ticket of the last pass whose first rows are done
+    def __init__(self, count: int, ordered: bool):
+        """ordered: whether other sums, too, are taken in the particles' order, at the cost of one thread."""
+        self.count, self.ordered = count, ordered
+        self.items = count * SPREAD  # loop iterations
+        self.bounds = ti.field(ti.i32, (count, self.parts + 1))  # first particle of each part, and end of the last
+        self.ready = ti.field(ti.i32, count)  # ticket of the last pass whose first rows are done
         self._tickets = 0
 
     def ticket(self, passes: int = 1) -> int:
@@ -47,7 +53,7 @@ class Slabs:
 
         Returns when they may be added to nodes.
         """
-        slab = t // SPREAD
+        slab = self._slab(t)
         if part == 2 and slab + 1 < self.count:
             # an atomic, since nothing else makes the compiler look again and again
             seen = ti.atomic_max(self.ready[slab + 1], 0)
@@ -59,7 +65,11 @@ class Slabs:
     def done(self, t, part, ticket):
         """To be called when the particles of a part have been added."""
         if part == 0:
-            ti.atomic_max(self.ready[t // SPREAD], ticket)
+            ti.atomic_max(self.ready[self._slab(t)], ticket)
+
+    @ti.func
+    def _slab(self, t):
+        return self.count - 1 - t // SPREAD
 
     @ti.func
     def add(self, field: ti.template(), i, value):
@@ -80,7 +90,7 @@ class Slabs:
 class Single:
     """CPU, one thread: everything in turn, on the thread that asks. Waking another one costs 0.1 ms a loop."""
 
-    serial = True
+    serial, ordered = True, False
     parts = stride = block = items = count = 1
 
     def __init__(self, particle_count: int):
@@ -110,7 +120,7 @@ class Single:
 class Chunks:
     """GPU: every thread takes a few particles that are neighbours in cell order."""
 
-    serial = False
+    serial = ordered = False
     parts = stride = 1
     block = 128
     size = 4
@@ -138,9 +148,11 @@ class Chunks:
         pass
 
 
-def traversal(particle_count: int, gpu: bool) -> Slabs | Single | Chunks:
+def traversal(particle_count: int, gpu: bool, deterministic: bool) -> Slabs | Single | Chunks:
     """The one for the device and the number of threads that Taichi was started with."""
     threads = ti.lang.impl.current_cfg().cpu_max_num_threads
     if gpu:
         return Chunks(particle_count)
-    return Slabs(threads) if threads > 1 else Single(particle_count)
+    if deterministic:
+        return Slabs(FIXED_SLABS, ordered=True)
+    return Slabs(threads, ordered=False) if threads > 1 else Single(particle_count)

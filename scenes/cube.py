@@ -17,7 +17,7 @@ def scene(
     flaw_width: float = 1.5 * mm,
     dx: float = 0.5 * mm,
     strain_end: float = 2.5e-4,
-    time_scale: float = 8.0,
+    time_scale: float = 5.0,
 ) -> Scene:
     rock = Rock(
         density=2600.0,
@@ -36,5 +36,5 @@ def scene(
         bodies=(Body(region=Difference(whole=block, removed=(flaw,)), seeding=Jittered(amount=0.1)),),
         rock=rock,
         loading=Loading(boundaries=platens, start=Affine(), time_scale=time_scale, width=50.0 * mm),
-        schedule=Schedule(strain_end=strain_end),
+        schedule=Schedule(strain_end=strain_end, cfl=1.0),
     )

@@ -47,6 +47,6 @@ def scene(
         loading=Loading(
             boundaries=platens, start=Ramp(time=0.3 * ms * time_scale), time_scale=time_scale, width=math.pi * radius
         ),
-        schedule=Schedule(strain_end=strain_end),
+        schedule=Schedule(strain_end=strain_end, cfl=1.0),
         shape=Gimp(),  # wide B-splines reach past the curved contact and tear rock beside the platens
     )

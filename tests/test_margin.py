@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 from rsmpm_ti.averaging import Nonlocal
+from rsmpm_ti.checkpoint import particle_arrays
 from rsmpm_ti.directional import Directional
 from rsmpm_ti.heterogeneity import Weibull
 from rsmpm_ti.laws import Hooke, MohrCoulomb, Rock, Unbreakable
@@ -16,7 +17,7 @@ from rsmpm_ti.output import write_vtu
 from rsmpm_ti.regions import Box
 from rsmpm_ti.snapshot import SHEAR, TENSION
 from rsmpm_ti.softening import ExponentialSoftening, LinearSoftening
-from rsmpm_ti.sorting import particle_arrays, sort_particles
+from rsmpm_ti.sorting import sort_particles
 from rsmpm_ti.spec import AtRest, Body, Domain, Loading, Scene, Schedule
 from rsmpm_ti.state import NO_SHADE, Simulation
 

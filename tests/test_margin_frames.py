@@ -9,7 +9,8 @@ from snapshots import snapshot_of
 
 from rsmpm_ti import load_scene
 from rsmpm_ti.directional import Directional
-from rsmpm_ti.frames import Gallery
+from rsmpm_ti.frames import commission
+from rsmpm_ti.gallery import Gallery
 from rsmpm_ti.paint.figure import FramePainter
 from rsmpm_ti.paint.raster import Raster
 from rsmpm_ti.paint.view import View, crack_palette, cracking_palette, margin_palette
@@ -141,8 +142,8 @@ def test_gallery_writes_margin_frames_only_when_asked(tmp_path, margin):
         rock=replace(scene.rock, after_failure=law),
     )
     x, _ = stripes(1)
-    gallery = Gallery(scene, "cube", tmp_path, 5e-3)
-    gallery.frame(snapshot_of(x), NO_ROWS)
+    gallery = Gallery(commission(scene, "cube", tmp_path, 5e-3))
+    gallery.frame(0, snapshot_of(x), NO_ROWS)
     gallery.close(snapshot_of(x), NO_ROWS, [], np.zeros(0))
     names = ["cracks_0000.png", *(["margin_0000.png"] if margin else []), "stress_0000.png"]
     assert sorted(path.name for path in (tmp_path / "frames").iterdir()) == names

@@ -2,11 +2,8 @@
 
 import csv
 import json
-import os
-import signal
 import subprocess
 import sys
-import threading
 from pathlib import Path
 
 import imageio.v3 as imageio
@@ -14,7 +11,7 @@ import meshio
 import numpy as np
 import pytest
 
-from rsmpm_ti import load_scene, simulate
+from rsmpm_ti import load_scene
 from rsmpm_ti.errors import UnstableRun
 from rsmpm_ti.run import Progress
 from rsmpm_ti.scene import main
@@ -132,19 +129,6 @@ def test_quasi_static_measures_are_small(run_folder):
     assert summary["platen_imbalance"] < 0.01
 
 
-def test_ctrl_c_stops_after_the_step_and_writes_everything(tmp_path):
-    def interrupt(progress: Progress) -> None:
-        if progress.share > 0.3:
-            os.kill(os.getpid(), signal.SIGINT)
-
-    assert threading.current_thread() is threading.main_thread()
-    scene = load_scene("cube", dx=2e-3, flaw_width=6e-3, time_scale=16.0)
-    result = simulate(scene, out=tmp_path, name="cube", progress=interrupt)
-    assert result.stopped.startswith("interrupted after step")
-    assert 0.25 < result.history["axial_strain"][-1] / 2.5e-4 < 0.5
-    assert (tmp_path / "history.csv").exists() and (tmp_path / "cube.mp4").exists()
-
-
 def test_unstable_run_says_where_and_keeps_what_there_is(tmp_path):
     """A particle is made sick during the run: exit as UnstableRun, with step and place, files written."""
     scene = load_scene("intact", dx=5e-3, strain_end=1e-3)
@@ -155,10 +139,8 @@ def test_unstable_run_says_where_and_keeps_what_there_is(tmp_path):
 
     import rsmpm_ti.run as module
 
-    seeds = scene.particles()
-    out = module._prepare(scene, tmp_path)
-    real, gpu = module.start_taichi("f64", "cpu", 1)
-    spoil.run = module._Run(scene, seeds, out, "intact", real, gpu, spoil, "f64")
+    settings = module.Settings(name="intact", threads=1, progress=spoil)
+    spoil.run = module.Run(scene, scene.particles(), module.prepare(scene, tmp_path), settings)
     with pytest.raises(UnstableRun, match=r"not finite or left the domain at step \d+, t = .* mm"):
         spoil.run.go()
     assert len(table(tmp_path / "history.csv")) > 10
@@ -203,8 +185,7 @@ def test_a_flying_fragment_is_sorted_before_it_leaves_its_slabs_reach():
 
     import rsmpm_ti.run as module
 
-    real, gpu = module.start_taichi("f64", "cpu", 1)
-    look.run = module._Run(scene, scene.particles(), None, "fragment", real, gpu, look, "f64")
+    look.run = module.Run(scene, scene.particles(), None, module.Settings(threads=1, progress=look))
     result = look.run.go()
     assert result.snapshot.displacement[-1, 0] > 0.01  # it has crossed more than ten cells
     assert farthest <= REACH - scene.shape.width  # the rows by which particles may stray

@@ -232,7 +232,7 @@ def test_slabs_share_rows_only_in_the_parts_that_wait_for_each_other(threads, sh
     that particles of a part may touch when they have strayed by a row. First rows of a slab are added before the last
     ones of the slab before, which wait; nothing else of two slabs may meet."""
     row = np.sort(np.random.default_rng(threads).integers(5, 60, size=4000))
-    slabs = Slabs(threads)
+    slabs = Slabs(threads, ordered=False)
     slabs.refresh(row)
     bounds = slabs.bounds.to_numpy()
     assert bounds[0, 0] == 0 and bounds[-1, -1] == len(row) and (bounds[1:, 0] == bounds[:-1, -1]).all()
@@ -251,7 +251,7 @@ def test_slabs_share_rows_only_in_the_parts_that_wait_for_each_other(threads, sh
 
 @pytest.mark.parametrize("rows", [1, 3, 9, 17])
 def test_body_of_few_rows_is_shared_by_fewer_threads(rows):
-    slabs = Slabs(4)
+    slabs = Slabs(4, ordered=False)
     slabs.refresh(np.repeat(np.arange(7, 7 + rows), 5))
     bounds = slabs.bounds.to_numpy()
     assert bounds[0, 0] == 0 and bounds.max() == 5 * rows

@@ -199,3 +199,9 @@ def write_png(path: str | os.PathLike, image: np.ndarray, **notes: str) -> Path:
     Image.fromarray(image).save(part, format="PNG", compress_level=1, pnginfo=info)
     os.replace(part, path)
     return path
+
+
+def read_png(path: str | os.PathLike) -> np.ndarray:
+    """What `write_png` wrote, uint8 [h, w, 3]."""
+    with Image.open(path) as picture:
+        return np.array(picture.convert("RGB"))
