@@ -4,6 +4,7 @@ Everything is arithmetic on the parts; nothing is seeded. Each check raises Scen
 """
 
 import math
+import os
 
 import numpy as np
 
@@ -25,6 +26,9 @@ FASTEST = 0.4
 
 MOST = 2_000_000_000
 """Most particles, grid nodes and steps: 32-bit numbers count them, and no machine here would hold or finish more."""
+
+BYTES_PER_PARTICLE, BYTES_PER_NODE = 200, 72
+"""Memory of the fields of a 2D scene with viscosity and failure, f64."""
 
 
 def check_bodies(scene) -> None:
@@ -53,6 +57,27 @@ def check_bodies(scene) -> None:
     if count > MOST:
         most = f"such that bodies have at most {MOST:.3g} particles, not {count:.3g}"
         raise refuse("domain.dx", scene.domain.dx, most)
+
+
+def check_memory(scene) -> None:
+    """Refuse what this machine cannot hold, before its particles are seeded."""
+    held = physical_memory()
+    count = 0.0
+    for body in scene.bodies:
+        low, high = body.region.bounds()
+        count += math.prod((high - low) / scene.domain.dx * body.seeding.particles_per_axis)
+    needed = BYTES_PER_PARTICLE * count
+    if held and needed > held:
+        allowed = f"such that {count:.3g} particles, about {needed / 1e9:.3g} GB, fit in the {held / 1e9:.3g} GB here"
+        raise refuse("domain.dx", scene.domain.dx, allowed, "or take fewer particles_per_axis")
+
+
+def physical_memory() -> int:
+    """Bytes of memory of this machine; 0 where the system does not say."""
+    try:
+        return os.sysconf("SC_PAGE_SIZE") * os.sysconf("SC_PHYS_PAGES")
+    except (AttributeError, OSError, ValueError):
+        return 0
 
 
 def check_loading(scene) -> None:

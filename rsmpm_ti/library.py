@@ -108,8 +108,16 @@ def _load(path: Path):
             None,
         )
         place = f" line {line}" if line else ""
-        raise SceneError(f"{path}{place} cannot be loaded: {type(error).__name__}: {error}") from None
+        raise SceneError(f"{path}{place} cannot be loaded: {_said(error)}") from None
     return module
+
+
+def _said(error: BaseException) -> str:
+    """What an exception of a scene file says, which may be too much, or nothing that can be shown."""
+    try:
+        return short(f"{type(error).__name__}: {error}")
+    except Exception:
+        return type(error).__name__
 
 
 def _function(path: Path):
@@ -120,8 +128,8 @@ def _function(path: Path):
     except (AttributeError, TypeError, ValueError):
         raise SceneError(f"{path} defines no function scene(); it must return a Scene") from None
     quick = getattr(module, "QUICK", {})
-    if not isinstance(quick, dict):
-        raise SceneError(f"{path}: QUICK must be a dict of keywords of scene(), not a {type(quick).__name__}")
+    if not (isinstance(quick, dict) and all(isinstance(key, str) for key in quick)):
+        raise SceneError(f"{path}: QUICK must be a dict of keywords of scene(), not {shown(quick)}")
     return module.scene, parameters, quick
 
 
@@ -146,8 +154,8 @@ def _call(function, path: Path, overrides: dict, settings: dict[str, str]) -> Sc
         scene = function(**values)
     except SceneError:
         raise
-    except Exception as error:
-        raise SceneError(f"{path}: scene({values}) failed: {type(error).__name__}: {error}") from None
+    except (Exception, SystemExit) as error:
+        raise SceneError(f"{path}: scene({short(str(values))}) failed: {_said(error)}") from None
     if not isinstance(scene, Scene):
         raise SceneError(f"{path}: scene() must return a Scene, not {type(scene).__name__}")
     return scene
@@ -239,5 +247,10 @@ def machine() -> dict[str, str]:
     import platform
 
     packages = ("taichi", "numpy", "scipy", "meshio", "matplotlib", "imageio")
-    versions = {name: importlib.metadata.version(name) for name in packages}
+    versions = {}
+    for name in packages:
+        try:
+            versions[name] = importlib.metadata.version(name)
+        except importlib.metadata.PackageNotFoundError:  # a movie is not written without imageio, but a run goes on
+            versions[name] = "not installed"
     return {"python": sys.version.split()[0], **versions, "system": platform.system(), "machine": platform.machine()}

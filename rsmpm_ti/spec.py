@@ -10,7 +10,7 @@ import numpy as np
 
 from rsmpm_ti.boundaries import Fixed, Platen, Wall
 from rsmpm_ti.confinement import check_confined_rock, check_confinement
-from rsmpm_ti.consistency import LEAST_CFL, MOST, check_bodies, check_loading, check_motion, check_step
+from rsmpm_ti.consistency import LEAST_CFL, MOST, check_bodies, check_loading, check_memory, check_motion, check_step
 from rsmpm_ti.directional import check_cracks
 from rsmpm_ti.errors import SceneError, refuse
 from rsmpm_ti.heterogeneity import check_scale
@@ -266,6 +266,7 @@ class Scene:
 
     def particles(self) -> list[Seeds]:
         """Initial positions and volumes of each body's particles; refuses empty bodies and glued slits."""
+        check_memory(self)
         origin = np.array(self.domain.lower, dtype=float)
         seeds = []
         for k, body in enumerate(self.bodies):

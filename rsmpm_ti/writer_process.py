@@ -17,6 +17,8 @@ NICENESS = 10
 class Desk:
     """Does orders one after another; their names are its methods."""
 
+    gallery = None
+
     def open(self, wanted) -> None:
         from rsmpm_ti.gallery import Gallery
 
@@ -55,6 +57,8 @@ def main() -> int:
             getattr(desk, order[0])(*order[1:])
         except Exception as error:  # whatever it is, the solver must hear of it in one line
             problem = (getattr(error, "strerror", None) or f"{type(error).__name__}: {error}") + _file(error)
+    if problem and desk.gallery is not None:
+        desk.gallery.discard()
     warning = "" if problem else desk.gallery.warning
     print(REPORT + json.dumps({"problem": problem, "warning": warning, "cpu_s": time.process_time()}), flush=True)
     return 1 if problem else 0
