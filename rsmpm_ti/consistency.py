@@ -27,6 +27,9 @@ FASTEST = 0.4
 MOST = 2_000_000_000
 """Most particles, grid nodes and steps: 32-bit numbers count them, and no machine here would hold or finish more."""
 
+SINGLE_SHARE = 1e-5
+"""Smallest cell over the largest coordinate in single precision: places are then rounded to 0.6 % of a cell."""
+
 BYTES_PER_PARTICLE, BYTES_PER_NODE = 200, 72
 """Memory of the fields of a 2D scene with viscosity and failure, f64."""
 
@@ -70,6 +73,14 @@ def check_memory(scene) -> None:
     if held and needed > held:
         allowed = f"such that {count:.3g} particles, about {needed / 1e9:.3g} GB, fit in the {held / 1e9:.3g} GB here"
         raise refuse("domain.dx", scene.domain.dx, allowed, "or take fewer particles_per_axis")
+
+
+def check_precision(scene, precision: str) -> None:
+    """Refuse single precision where it cannot tell places within a cell: it rounds them to 6e-8 of a coordinate."""
+    far = max(map(abs, (*scene.domain.lower, *scene.domain.upper)))
+    if precision == "f32" and not scene.domain.dx >= SINGLE_SHARE * far:
+        allowed = f"'f64' where dx is less than {SINGLE_SHARE:g} of the largest coordinate, {far:g} m"
+        raise refuse("precision", precision, allowed, "or move the domain to the origin")
 
 
 def physical_memory() -> int:

@@ -14,6 +14,7 @@ from pathlib import Path
 import numpy as np
 
 from rsmpm_ti import __version__
+from rsmpm_ti.consistency import check_precision
 from rsmpm_ti.errors import SceneError, UnstableRun, refuse
 from rsmpm_ti.kernel_cache import ensure_kernel_cache
 from rsmpm_ti.result import Progress, Result
@@ -49,6 +50,7 @@ def simulate(
     """
     if precision not in ("f64", "f32"):
         raise refuse("precision", precision, "'f64' or 'f32'")
+    check_precision(scene, precision)
     if arch not in ("cpu", "cuda"):
         raise refuse("arch", arch, "'cpu' or 'cuda'")
     if threads is not None and not (type(threads) is int and 1 <= threads <= 1024):

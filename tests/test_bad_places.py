@@ -158,6 +158,11 @@ def test_scene_that_this_machine_cannot_hold_is_refused(refused, tmp_path, monke
     assert "domain.dx" in message and "GB" in message and not (tmp_path / "out").exists()
 
 
+def test_single_precision_is_refused_where_it_loses_places(refused, tmp_path):
+    far = ["--set", "domain.lower=-400,0", "--set", "domain.grid=sparse", "--precision", "f32", "--out", str(tmp_path)]
+    assert "precision = 'f32' is refused: it must be 'f64'" in refused(*far)
+
+
 NOWHERE = {"HOME": "/dev/null", "MPLCONFIGDIR": "/dev/null/m", "TI_OFFLINE_CACHE_FILE_PATH": "/dev/null/t"}
 WITHOUT_CACHES = """
 import io, numpy as np
