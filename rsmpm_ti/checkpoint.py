@@ -15,7 +15,7 @@ from rsmpm_ti.output import CHECKPOINTS
 from rsmpm_ti.snapshot import HISTORY_COLUMNS
 
 EVENT_COLUMNS = ("time", "x", "mode", "sigma_1", "sigma_3", "released", "id")
-LEDGER = ("impulse", "work", "body_work", "viscous", "released")
+LEDGER = ("impulse", "work", "latest", "body_work", "viscous", "released")
 PER_SLOT = ("body_work", "viscous", "released")
 """Those of the ledger that have a slot for each thread: their sum is what counts."""
 

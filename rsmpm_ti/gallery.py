@@ -25,8 +25,12 @@ class Gallery:
             except RuntimeError as error:  # no encoder: frames still come
                 self.warning = str(error)
 
-    def frame(self, number: int, snapshot: Snapshot, history: np.ndarray) -> None:
-        images = {kind: painter.paint(snapshot, history, number) for kind, painter in self.painters.items()}
+    def paint(self, number: int, snapshot: Snapshot, history: np.ndarray) -> dict[str, np.ndarray]:
+        """Frames by kind, for `write`."""
+        return {kind: painter.paint(snapshot, history, number) for kind, painter in self.painters.items()}
+
+    def write(self, number: int, images: dict[str, np.ndarray]) -> None:
+        """Frames to files and into the movie; in order of their numbers."""
         for kind, image in images.items():
             write_png(frame_path(self._out, kind, number), image, painter=self._wanted.painters["backend"])
         self._film(images["stress"], images["cracks"])

@@ -100,8 +100,10 @@ def update_node(sim: ti.template(), i, divide: ti.template(), dt, factor):
             if boundary.holds(sim.grid.position(i), sim.grid.dx):
                 held = boundary.project(v, factor)
                 impulse = ti.cast(m * (held - v), ti.f64)
+                work = impulse.dot(ti.cast(held, ti.f64))
                 ledger.impulse[b] += impulse
-                ledger.work[b] += impulse.dot(ti.cast(held, ti.f64))
+                ledger.work[b] += work
+                ledger.latest[b] += work
                 v = held
         dv = v - v_old
     nodes.v[i] = v
@@ -114,6 +116,8 @@ def update_node(sim: ti.template(), i, divide: ti.template(), dt, factor):
 def new_velocity(sim: ti.template(), divide: ti.template(), dt, factor):
     """`divide`: v still holds momentum. Afterwards f holds the velocity change of the step."""
     nodes = sim.nodes
+    for b in ti.static(range(len(sim.boundaries))):
+        sim.ledger.latest[b] = 0.0
     if ti.static(divide):
         fold(nodes.momentum_columns, sim.grid.walls)
     fold(nodes.f_columns, sim.grid.walls)

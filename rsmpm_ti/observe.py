@@ -64,7 +64,7 @@ def take_snapshot(sim: Simulation, time: float) -> Snapshot:
     for k in range(packed.shape[1]):
         a, b = places[k]
         sigma[:, a, b] = sigma[:, b, a] = packed[:, k]
-    principal = np.linalg.eigvalsh(np.nan_to_num(sigma))
+    sigma_1, sigma_3 = extreme_stresses(packed)
     mode, failure_time = np.zeros(n, dtype=np.int8), np.full(n, np.nan)
     if particles.breaks:
         mode = (particles.failed if particles.cracks else particles.mode).to_numpy()[order].astype(np.int8)
@@ -82,8 +82,8 @@ def take_snapshot(sim: Simulation, time: float) -> Snapshot:
         displacement=u,
         velocity=column(particles.v),
         sigma=sigma,
-        sigma_1=principal[:, 2],
-        sigma_3=principal[:, 0],
+        sigma_1=sigma_1,
+        sigma_3=sigma_3,
         volume=column(particles.volume) * column(particles.J),
         strength=column(particles.strength) if particles.varied else np.ones(n),
         failure_mode=mode,
@@ -94,6 +94,20 @@ def take_snapshot(sim: Simulation, time: float) -> Snapshot:
         aperture=aperture,
         crack_angle=crack_angle,
     )
+
+
+def extreme_stresses(packed: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Largest and smallest principal stress of packed ones (see tensors.py), [n] each; in 2D by the closed form, in a
+    tenth of the time of an eigenvalue solver. What is not finite counts as 0 or as a very large number.
+    """
+    packed = np.nan_to_num(packed, posinf=1e300, neginf=-1e300)
+    if packed.shape[1] == 4:
+        xx, yy, zz, xy = packed.T
+        centre, radius = 0.5 * xx + 0.5 * yy, np.hypot(0.5 * xx - 0.5 * yy, xy)
+        return np.maximum(centre + radius, zz), np.minimum(centre - radius, zz)
+    xx, yy, zz, xy, yz, zx = packed.T
+    principal = np.linalg.eigvalsh(np.stack([xx, xy, zx, xy, yy, yz, zx, yz, zz], axis=1).reshape(-1, 3, 3))
+    return principal[:, 2], principal[:, 0]
 
 
 class History:

@@ -76,7 +76,11 @@ def write_table(path: Path, header: tuple[str, ...], rows) -> None:
 
 
 def write_vtu(path: Path, snapshot: Snapshot) -> None:
-    """Particles as vertices for ParaView; vectors and points padded to 3D, stress as 9 components."""
+    """Particles as vertices for ParaView; vectors and points padded to 3D, stress as 9 components.
+
+    Places are in double precision. The rest is in single, which takes half of the time and of the disk; a checkpoint
+    holds every digit.
+    """
     import meshio
 
     n = len(snapshot.x)
@@ -84,25 +88,23 @@ def write_vtu(path: Path, snapshot: Snapshot) -> None:
     def padded(vectors):
         return np.pad(vectors, ((0, 0), (0, 3 - vectors.shape[1])))
 
-    mesh = meshio.Mesh(
-        padded(snapshot.x),
-        [("vertex", np.arange(n)[:, None])],
-        point_data={
-            "displacement": padded(snapshot.displacement),
-            "velocity": padded(snapshot.velocity),
-            "stress": snapshot.sigma.reshape(n, 9),
-            "sigma_1": snapshot.sigma_1,
-            "sigma_3": snapshot.sigma_3,
-            "failure_mode": snapshot.failure_mode,
-            "failure_time": snapshot.failure_time,
-            "volume": snapshot.volume,
-            "strength_factor": snapshot.strength,
-            "margin": snapshot.margin,
-            "governs": snapshot.governs,
-            "damage": snapshot.damage,
-            "aperture_m": snapshot.aperture,
-        },
-    )
+    fields = {
+        "displacement": padded(snapshot.displacement),
+        "velocity": padded(snapshot.velocity),
+        "stress": snapshot.sigma.reshape(n, 9),
+        "sigma_1": snapshot.sigma_1,
+        "sigma_3": snapshot.sigma_3,
+        "failure_mode": snapshot.failure_mode,
+        "failure_time": snapshot.failure_time,
+        "volume": snapshot.volume,
+        "strength_factor": snapshot.strength,
+        "margin": snapshot.margin,
+        "governs": snapshot.governs,
+        "damage": snapshot.damage,
+        "aperture_m": snapshot.aperture,
+    }
+    single = {name: a.astype(np.float32) if a.dtype == np.float64 else a for name, a in fields.items()}
+    mesh = meshio.Mesh(padded(snapshot.x), [("vertex", np.arange(n)[:, None])], point_data=single)
     with complete(path) as part:
         meshio.write(part, mesh, file_format="vtu", binary=True, compression="zlib")
 

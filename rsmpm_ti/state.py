@@ -181,12 +181,16 @@ class Means:
 
 @ti.data_oriented
 class Ledger:
-    """Sums over steps, always float64: platen impulses [N s], their work [J], energy lost [J]."""
+    """Sums over steps, always float64: platen impulses [N s], their work [J], energy lost [J].
+
+    `latest` is the work of the latest step alone: forces are those of a step's beginning, so that the work until now
+    takes half of it again (trapezoidal rule).
+    """
 
     def __init__(self, scene: Scene, slots: int):
         boundaries = max(1, len(scene.loading.boundaries))
         self.impulse = ti.Vector.field(scene.dim, ti.f64, boundaries)
-        self.work = ti.field(ti.f64, boundaries)
+        self.work, self.latest = ti.field(ti.f64, boundaries), ti.field(ti.f64, boundaries)
         self.body_work = ti.field(ti.f64, slots)
         self.viscous, self.released = ti.field(ti.f64, slots), ti.field(ti.f64, slots)
 

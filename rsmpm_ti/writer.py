@@ -21,8 +21,9 @@ from rsmpm_ti.errors import SceneError
 from rsmpm_ti.frames import Commission
 from rsmpm_ti.snapshot import Snapshot
 
-WAITING = 4
-"""Orders that may wait for the child: a longer queue would hold as many copies of the particles."""
+WAITING_BYTES = 512 * 2**20
+"""Orders that may wait for the child, which is behind while much fails: each holds a copy of the particles. One order
+may be larger."""
 
 REPORT = "rsmpm_ti writer: "
 """Begins the line by which the child says how it went; Taichi prints to the same pipe."""
@@ -80,22 +81,23 @@ class Writer:
                 pipe.close()
 
     def _order(self, *order) -> None:
-        """Hand an order over, beside the caller; wait while too many are on their way.
+        """Hand an order over, beside the caller; wait while too much is on its way.
 
         Raises SceneError, with the reason that the child gives, where it has ended.
         """
-        self._settle(WAITING - 1)
-        self._pending.append(self._sender.submit(self._send, order))
+        message = pickle.dumps(order, protocol=5)
+        self._settle(WAITING_BYTES - len(message))
+        self._pending.append((len(message), self._sender.submit(self._send, message)))
 
-    def _send(self, order: tuple) -> None:
-        pickle.dump(order, self._child.stdin, protocol=5)
+    def _send(self, message: bytes) -> None:
+        self._child.stdin.write(message)
         self._child.stdin.flush()
 
     def _settle(self, most: int) -> None:
-        """Wait until at most so many orders are on their way."""
-        while len(self._pending) > most:
+        """Wait until at most so many bytes are on their way."""
+        while self._pending and (self._pending[0][1].done() or sum(size for size, _ in self._pending) > most):
             try:
-                self._pending.pop(0).result()
+                self._pending.pop(0)[1].result()
             except OSError:  # a broken pipe: the child has ended, and `_end` says why
                 self._end()
 

@@ -5,6 +5,7 @@ import os
 import pickle
 import sys
 import time
+from concurrent.futures import ThreadPoolExecutor
 
 from rsmpm_ti.output import write_checkpoint, write_pvd, write_vtu
 from rsmpm_ti.run import start_taichi
@@ -14,8 +15,15 @@ NICENESS = 10
 """The solver goes first; painting takes the time that its threads leave."""
 
 
+WAITING = 4
+"""Painted frames, VTU files and checkpoints that may wait for the thread that writes them."""
+
+
 class Desk:
-    """Does orders one after another; their names are its methods."""
+    """Does orders; their names are its methods. Compressing and encoding go on beside painting, in order."""
+
+    def __init__(self):
+        self._files, self._pending = ThreadPoolExecutor(max_workers=1), []
 
     gallery = None
 
@@ -27,20 +35,33 @@ class Desk:
         self.gallery = Gallery(wanted)
 
     def refilm(self, count: int) -> None:
-        self.gallery.refilm(count)
+        self._later(self.gallery.refilm, count)
 
     def frame(self, number: int, snapshot, history) -> None:
-        self.gallery.frame(number, snapshot, history)
+        self._later(self.gallery.write, number, self.gallery.paint(number, snapshot, history))
 
     def vtu(self, entries, snapshot) -> None:
-        write_vtu(self.out / entries[-1][1], snapshot)
-        write_pvd(self.out / "particles.pvd", entries)
+        self._later(write_vtu, self.out / entries[-1][1], snapshot)
+        self._later(write_pvd, self.out / "particles.pvd", entries)
 
     def checkpoint(self, arrays) -> None:
-        write_checkpoint(self.out, arrays)
+        self._later(write_checkpoint, self.out, arrays)
 
     def close(self, *last) -> None:
+        self._settle(0)
         self.gallery.close(*last)
+
+    def stop(self) -> None:
+        """Drop what waits: after a problem, nothing may be written that comes after a gap."""
+        self._files.shutdown(cancel_futures=True)
+
+    def _later(self, work, *arguments) -> None:
+        self._settle(WAITING - 1)
+        self._pending.append(self._files.submit(work, *arguments))
+
+    def _settle(self, most: int) -> None:
+        while len(self._pending) > most:
+            self._pending.pop(0).result()
 
 
 def main() -> int:
@@ -51,11 +72,13 @@ def main() -> int:
     while order[0] != "close" and not problem:
         try:
             order = pickle.load(sys.stdin.buffer)
-        except (EOFError, pickle.UnpicklingError):  # the solver was killed: what is complete stays, without a movie
-            return 0
+        except (EOFError, pickle.UnpicklingError):
+            # The solver was killed. What is complete stays; what waits is dropped, for the run may go on at once.
+            os._exit(0)
         try:
             getattr(desk, order[0])(*order[1:])
         except Exception as error:  # whatever it is, the solver must hear of it in one line
+            desk.stop()
             problem = (getattr(error, "strerror", None) or f"{type(error).__name__}: {error}") + _file(error)
     if problem and desk.gallery is not None:
         desk.gallery.discard()

@@ -96,7 +96,7 @@ def test_vtu_files_carry_the_promised_fields_and_the_cracks(run_folder):
     assert failed.sum() == summary["failed_tension"] + summary["failed_shear"]
     assert np.isfinite(mesh.point_data["failure_time"][failed]).all()
     assert np.isnan(mesh.point_data["failure_time"][~failed]).all()
-    stress = mesh.point_data["stress"].reshape(-1, 3, 3)
+    stress = mesh.point_data["stress"].reshape(-1, 3, 3).astype(float)
     assert np.allclose(np.linalg.eigvalsh(stress)[:, 2], mesh.point_data["sigma_1"], atol=1.0)
     assert (
         np.abs(stress[failed] - np.trace(stress[failed], axis1=1, axis2=2)[:, None, None] / 3 * np.eye(3)).max() < 1e-6

@@ -6,6 +6,7 @@ import taichi as ti
 from harness import epsilon, flat, matrix, on_rows, rounded, vector
 from plain_mpm import PLACES, tensor
 
+from rsmpm_ti.observe import extreme_stresses
 from rsmpm_ti.tensors import (
     PACKED_LENGTH,
     double_contraction,
@@ -151,6 +152,17 @@ def test_extreme_principals_of_repeated_roots_and_near_them(taichi_real, dim, si
     # (in 3D, deviators below 1e-10 Pa count as none)
     scale = np.abs(s).max(axis=1, keepdims=True)
     assert (np.abs(found - expected) <= share * scale + 2e-10 * (dim == 3)).all()
+
+
+@both_dims
+def test_extreme_stresses_of_a_snapshot_are_those_of_an_eigenvalue_solver(dim):
+    stress = 1e6 * random_packed(dim, ti.f64)
+    exact = np.linalg.eigvalsh(tensor(stress))
+    largest, smallest = extreme_stresses(stress)
+    np.testing.assert_allclose(largest, exact[:, 2], rtol=0.0, atol=1e-8)  # round-off of stresses of some MPa
+    np.testing.assert_allclose(smallest, exact[:, 0], rtol=0.0, atol=1e-8)
+    stress[0, 0], stress[1, 1] = np.nan, np.inf
+    assert np.isfinite(extreme_stresses(stress)).all(), "a run that became unstable is still painted"
 
 
 @both_dims

@@ -29,6 +29,7 @@ class Raster:
         self.palette = palette
         self.skipped = 0  # particles of the last image that had no finite position, size or value
         self._area = ti.field(ti.i32, shape=(3, view.height, view.width))
+        self._cover = ti.field(ti.i32, shape=(view.height, view.width))
         self._value = ti.field(ti.i64, shape=(view.height, view.width))
         self._side = ti.field(ti.i64, shape=(view.height, view.width)) if palette.folded else self._value
 
@@ -42,16 +43,26 @@ class Raster:
         fixed = np.rint(np.clip(squares.value, -VALUE_RANGE, VALUE_RANGE) * UNIT).astype(np.int32)
         spacing = 2.0 * float(np.median(squares.half)) / INFLATE if len(fixed) else 0.0
         image = np.empty((self.view.height, self.view.width, 3), dtype=np.uint8)
-        self._area.fill(0)
-        self._value.fill(0)
-        self._side.fill(0)
         sums, folded = (self._area, self._value, self._side), self.palette.folded
+        clear(*sums)
         splat(*sums, folded, squares.column, squares.row, squares.half, fixed, squares.mode)
-        resolve(*sums, folded, self.palette.ramp, self.palette.marks(), round(GAP * spacing), image)
+        add_modes(self._area, self._cover)
+        gap = round(GAP * spacing)
+        resolve(*sums, self._cover, folded, self.palette.ramp, self.palette.marks(), gap, image)
         return image
 
     def close(self) -> None:
         """Nothing to give back: fields live until the next `ti.init`. Here so that painters are interchangeable."""
+
+
+@ti.kernel
+def clear(area: ti.template(), value: ti.template(), side: ti.template()):
+    """One pass: `fill` takes one for each field, and 13 ms where this takes 2."""
+    for i, j in ti.ndrange(*value.shape):
+        for mode in ti.static(range(3)):
+            area[mode, i, j] = 0
+        value[i, j] = 0
+        side[i, j] = 0
 
 
 @ti.kernel
@@ -87,21 +98,23 @@ def splat(
                         value[i, j] += ti.cast(a, ti.i64) * p_value[p]
 
 
-@ti.func
-def covered(area, i, j):
-    return area[0, i, j] + area[1, i, j] + area[2, i, j]
+@ti.kernel
+def add_modes(area: ti.template(), cover: ti.template()):
+    """Area of each pixel that squares of any mode cover."""
+    for i, j in ti.ndrange(*cover.shape):
+        cover[i, j] = area[0, i, j] + area[1, i, j] + area[2, i, j]
 
 
 @ti.func
-def reach(area, i, j, di, dj, gap):
+def reach(cover, i, j, di, dj, gap):
     """Pixels from (i, j) in direction (di, dj) to the first that is mostly rock; gap + 1 where none is within gap."""
     steps = gap + 1
     s = 1
     while s < steps:
         k, m = i + s * di, j + s * dj
-        if k < 0 or k >= area.shape[1] or m < 0 or m >= area.shape[2]:
+        if k < 0 or k >= cover.shape[0] or m < 0 or m >= cover.shape[1]:
             s = steps
-        elif 2 * covered(area, k, m) >= UNIT:
+        elif 2 * cover[k, m] >= UNIT:
             steps = s
         s += 1
     return steps
@@ -112,6 +125,7 @@ def resolve(
     area: ti.template(),
     value: ti.template(),
     side: ti.template(),
+    cover: ti.template(),
     folded: ti.template(),
     ramp: ti.types.ndarray(dtype=ti.f32, ndim=2),
     marks: ti.types.ndarray(dtype=ti.f32, ndim=2),
@@ -123,30 +137,37 @@ def resolve(
     Between particles that were seeded with jitter there are slivers that no square covers. A pixel with rock on both
     sides, at most `gap` pixels apart, belongs to the rock and takes the nearer side's colour.
     """
-    for i, j in value:
+    for i, j in ti.ndrange(*value.shape):
         k, m = i, j
-        rock = ti.min(covered(area, i, j), UNIT) / UNIT
-        if 0 < gap and covered(area, i, j) < UNIT:
-            for line in range(4):  # along the row, along the column, along both diagonals
+        rock = ti.min(cover[i, j], UNIT) / UNIT
+        if 0 < gap and cover[i, j] < UNIT:
+            line = 0  # along the row, along the column, along both diagonals, until rock is found on both sides
+            while line < 4:
                 di, dj = ti.min(1, line), (1 - line if line < 2 else 5 - 2 * line)
                 widest = gap if line < 2 else gap * 5 // 7  # a diagonal step is longer
-                before = reach(area, i, j, -di, -dj, widest)
+                before = reach(cover, i, j, -di, -dj, widest)
                 if before <= widest:  # else no rock on one side: most of the void around the specimen
-                    after = reach(area, i, j, di, dj, widest + 1 - before)
+                    after = reach(cover, i, j, di, dj, widest + 1 - before)
                     if before + after - 1 <= widest:
                         rock = 1.0
-                        if 4 * covered(area, k, m) < UNIT:
+                        line = 4
+                        if 4 * cover[i, j] < UNIT:
                             step = after if after < before else -before
                             k, m = i + step * di, j + step * dj
-        full = ti.max(1, ti.min(covered(area, k, m), UNIT))
-        tension = ti.min(1.0, area[1, k, m] / full)
-        shear = ti.min(1.0 - tension, area[2, k, m] / full)
-        mean = value[k, m] / ti.max(1, area[0, k, m]) / UNIT
-        if ti.static(folded):
-            mean = ti.select(side[k, m] < 0, -mean, mean)
-        place = (ti.min(1.0, ti.max(-1.0, mean)) + 1.0) * 0.5 * (ramp.shape[0] - 1)
-        left = ti.min(int(place), ramp.shape[0] - 2)
-        for c in ti.static(range(3)):
-            intact = ramp[left, c] + (place - left) * (ramp[left + 1, c] - ramp[left, c])
-            colour = tension * marks[1, c] + shear * marks[2, c] + (1.0 - tension - shear) * intact
-            image[i, j, c] = ti.cast(ti.round(rock * colour + (1.0 - rock) * marks[0, c], ti.i32), ti.u8)
+                line += 1
+        if rock == 0.0:
+            for c in ti.static(range(3)):
+                image[i, j, c] = ti.cast(ti.round(marks[0, c], ti.i32), ti.u8)
+        else:
+            full = ti.max(1, ti.min(cover[k, m], UNIT))
+            tension = ti.min(1.0, area[1, k, m] / full)
+            shear = ti.min(1.0 - tension, area[2, k, m] / full)
+            mean = value[k, m] / ti.max(1, area[0, k, m]) / UNIT
+            if ti.static(folded):
+                mean = ti.select(side[k, m] < 0, -mean, mean)
+            place = (ti.min(1.0, ti.max(-1.0, mean)) + 1.0) * 0.5 * (ramp.shape[0] - 1)
+            left = ti.min(int(place), ramp.shape[0] - 2)
+            for c in ti.static(range(3)):
+                intact = ramp[left, c] + (place - left) * (ramp[left + 1, c] - ramp[left, c])
+                colour = tension * marks[1, c] + shear * marks[2, c] + (1.0 - tension - shear) * intact
+                image[i, j, c] = ti.cast(ti.round(rock * colour + (1.0 - rock) * marks[0, c], ti.i32), ti.u8)
