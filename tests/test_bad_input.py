@@ -10,6 +10,7 @@ import itertools
 import json
 import re
 
+import numpy as np
 import pytest
 from hostile import (
     LARGE,
@@ -29,10 +30,12 @@ from hostile import (
 from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
+from rsmpm_ti import summary
 from rsmpm_ti.errors import SceneError, shown
 from rsmpm_ti.library import available, keywords_of, load_scene
 from rsmpm_ti.record import KNOWN, read_scene, to_plain
 from rsmpm_ti.scene import main
+from rsmpm_ti.starts import AtRest
 
 SMALL = {"dx": 2e-3, "flaw_width": 6e-3}
 KEYWORDS = tuple(keywords_of(available()["cube"]))
@@ -73,6 +76,19 @@ def test_constructor_refuses_by_field_or_the_scene_runs_with_the_value(kind):
         if (found := outcome(lambda f=field, v=value: check_runnable(put(scene, [*path, f], v)), field))
     ]
     assert not wrong, "\n".join(wrong)
+
+
+def test_platens_that_stand_still_are_no_load_axis_of_length_zero():
+    scene, _ = home(AtRest)
+    still = tuple(dataclasses.replace(platen, speed=0.0) for platen in scene.loading.boundaries)
+    check_runnable(put(scene, ["loading", "boundaries"], still))
+
+
+def test_platens_that_stand_still_have_no_modulus():
+    n = np.ones(20)
+    names = ("stress_top_Pa", "stress_bottom_Pa", "energy_kinetic_J", "energy_elastic_J")
+    numbers = summary._stress_numbers(1e6 * n, 0.0 * n, np.arange(20.0), n > 0.0, dict.fromkeys(names, 1e6 * n), 0.0)
+    assert numbers["apparent_modulus_Pa"] is None and numbers["peak_stress_Pa"] == 1e6
 
 
 @pytest.fixture(scope="module")
