@@ -8,6 +8,8 @@ import os
 
 # Taichi greets on standard output when it is imported; a command's output should hold only its own words
 os.environ.setdefault("ENABLE_TAICHI_HEADER_PRINT", "0")
+# and without a home, as under cron or a service manager, it ends the process by a signal
+os.environ.setdefault("HOME", os.path.expanduser("~"))
 
 __version__ = "0.1.0"
 __all__ = ["__version__", "load_scene", "simulate"]

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from rsmpm_ti.errors import refuse
+from rsmpm_ti.kinds import check_kinds, check_positive
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -41,12 +42,12 @@ class Nonlocal:
     acts = True
 
     def __post_init__(self):
-        if not (math.isfinite(self.length) and self.length > 0.0):
-            raise refuse("averaging.length", self.length, "a positive length in metres")
+        check_kinds("averaging", self)
+        check_positive("averaging.length", self.length, "length in metres")
         if not 0.0 <= self.shade <= 100.0:
             raise refuse("averaging.shade", self.shade, "in [0, 100] lengths")
-        if not 0.0 < self.wedge < 90.0:
-            raise refuse("averaging.wedge", self.wedge, "in (0, 90) degrees")
+        if not 0.1 <= self.wedge <= 89.9:
+            raise refuse("averaging.wedge", self.wedge, "in [0.1, 89.9] degrees")
 
     @property
     def radius(self) -> float:

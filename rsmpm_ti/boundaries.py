@@ -3,21 +3,25 @@
 A boundary holds every node on its plane and beyond it. `factor` is the start ramp, 0 to 1.
 """
 
-import math
 from dataclasses import dataclass
 
 import taichi as ti
 
 from rsmpm_ti.errors import refuse
+from rsmpm_ti.kinds import check_kinds, check_size
+from rsmpm_ti.regions import FARTHEST
+
+ROUGHEST = 1e3
+"""Largest friction coefficient: nothing slips long before."""
 
 
 def _check_plane(owner: str, boundary) -> None:
-    if type(boundary.axis) is not int or boundary.axis not in (0, 1, 2):
+    check_kinds(owner, boundary)
+    if boundary.axis not in (0, 1, 2):
         raise refuse(f"{owner}.axis", boundary.axis, "0, 1 or 2")
     if boundary.side not in ("lower", "upper"):
         raise refuse(f"{owner}.side", boundary.side, "'lower' or 'upper'")
-    if not math.isfinite(boundary.position):
-        raise refuse(f"{owner}.position", boundary.position, "a finite coordinate in metres")
+    check_size(f"{owner}.position", (boundary.position,), "a coordinate in metres", FARTHEST)
 
 
 @ti.func
@@ -48,12 +52,13 @@ class Platen:
 
     def __post_init__(self):
         _check_plane("platen", self)
-        if not math.isfinite(self.speed):
-            raise refuse("platen.speed", self.speed, "a finite velocity in m/s")
-        if not (math.isfinite(self.friction) and self.friction >= 0.0):
-            raise refuse("platen.friction", self.friction, "zero or a positive coefficient")
-        if self.span is not None and not (len(self.span) == 2 and -math.inf < self.span[0] < self.span[1] < math.inf):
-            raise refuse("platen.span", self.span, "a finite interval (lower, upper) in metres")
+        check_size("platen.speed", (self.speed,), "a velocity in m/s")
+        if not 0.0 <= self.friction <= ROUGHEST:
+            raise refuse("platen.friction", self.friction, f"a coefficient in [0, {ROUGHEST:g}]", "or set bonded")
+        if self.span is not None:
+            check_size("platen.span", self.span, "a finite interval (lower, upper) in metres", FARTHEST)
+            if not self.span[0] < self.span[1]:
+                raise refuse("platen.span", self.span, "an interval with its lower end first, in metres")
 
     @property
     def limited(self) -> bool:

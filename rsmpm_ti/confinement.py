@@ -18,9 +18,8 @@ What it means:
   stress-free volumes so much larger and a density so much smaller that volume and mass are those seeded.
 """
 
-import math
-
 from rsmpm_ti.errors import refuse
+from rsmpm_ti.kinds import LARGEST
 from rsmpm_ti.laws import Hooke
 
 LARGEST_SHARE = 0.1
@@ -29,7 +28,7 @@ LARGEST_SHARE = 0.1
 
 def check_confinement(pressure: float) -> None:
     """Raises SceneError unless pressure [Pa] is zero or more and finite."""
-    if not 0.0 <= pressure < math.inf:
+    if not 0.0 <= pressure <= LARGEST:
         raise refuse("loading.confinement", pressure, "zero or more and finite, in Pa", "it is compression positive")
 
 

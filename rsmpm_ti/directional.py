@@ -15,6 +15,7 @@ from dataclasses import dataclass
 import taichi as ti
 
 from rsmpm_ti.errors import refuse
+from rsmpm_ti.kinds import check_kinds
 from rsmpm_ti.softening import Brittle, ExponentialSoftening, LinearSoftening
 
 FRESH = 1e-12
@@ -22,6 +23,9 @@ FRESH = 1e-12
 
 NO_DIRECTION = 1e-5
 """Radius of in-plane stress over tensile strength below which a rotating crack stays: round-off has no direction."""
+
+MOST_CELLS = 64
+"""Longest length of averaging [cells]; every node then sums 450 others along each axis."""
 
 SWEEPS = 4
 """Sweeps over the two openings; each leaves (lam/M)^2 of the error, 3 % for nu = 0.14 and 11 % for nu = 0.25."""
@@ -47,8 +51,9 @@ class Directional:
     directional = True
 
     def __post_init__(self):
-        if not 0.0 <= self.residual_friction_angle < 90.0:
-            raise refuse("after_failure.residual_friction_angle", self.residual_friction_angle, "in [0, 90) degrees")
+        check_kinds("after_failure", self)
+        if not 0.0 <= self.residual_friction_angle <= 89.0:
+            raise refuse("after_failure.residual_friction_angle", self.residual_friction_angle, "in [0, 89] degrees")
 
     @property
     def tan_residual(self) -> float:
@@ -84,6 +89,9 @@ def check_cracks(rock, shape, dim: int, dx: float) -> None:
         if not rock.averaging.length >= least:
             remedy = f"use dx of at most {rock.averaging.length / least * dx:.4g} m"
             raise refuse("rock.averaging.length", rock.averaging.length, f"at least {least:.4g} m here", remedy)
+        if not rock.averaging.length <= MOST_CELLS * dx:
+            remedy = f"use dx of at least {rock.averaging.length / MOST_CELLS:.4g} m"
+            raise refuse("rock.averaging.length", rock.averaging.length, f"at most {MOST_CELLS} cells", remedy)
     if rock.criterion.breaks:
         criterion, elasticity = rock.criterion, rock.elasticity
         _check_snap_back("G_f_I", criterion.tensile_strength, law.softening, elasticity.E, shape.crack_band, dx)

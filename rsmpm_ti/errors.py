@@ -4,8 +4,12 @@
 class SceneError(ValueError):
     """A scene, option or file is refused before anything compiles (exit status 2).
 
-    The message is one line: field, value, allowed range, and what to do.
+    The message is one line: field, value, allowed range, and what to do. What a terminal would act on is escaped.
     """
+
+    def __init__(self, message: str):
+        line = " ".join(message.split())
+        super().__init__("".join(c if c.isprintable() else repr(c)[1:-1] for c in line))
 
 
 class UnstableRun(RuntimeError):
@@ -15,6 +19,23 @@ class UnstableRun(RuntimeError):
     """
 
 
+MOST_SHOWN = 200
+"""Characters of a refused value that are shown: enough to know it again."""
+
+
 def refuse(field: str, value: object, allowed: str, remedy: str = "") -> SceneError:
     """The one form in which bad input is refused."""
-    return SceneError(f"{field} = {value!r} is refused: it must be {allowed}" + (f"; {remedy}" if remedy else ""))
+    return SceneError(f"{field} = {shown(value)} is refused: it must be {allowed}" + (f"; {remedy}" if remedy else ""))
+
+
+def shown(value: object) -> str:
+    """A value in one line of bounded length, whatever it is."""
+    try:
+        return short(" ".join(repr(value).split()))
+    except Exception:  # an integer of thousands of digits, or an object of a scene file that cannot show itself
+        return f"<{type(value).__name__}>"
+
+
+def short(text: str) -> str:
+    """The beginning of a text from outside."""
+    return text if len(text) <= MOST_SHOWN else f"{text[:MOST_SHOWN]}..."

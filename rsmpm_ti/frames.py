@@ -106,6 +106,8 @@ def load_limits(scene: Scene, volume: float) -> tuple[float | None, float | None
     if scene.loading.platens is None or scene.loading.width is None:
         return None, None
     strain = abs(scene.schedule.strain_end or scene.loading.strain_rate * scene.t_end)
+    if strain == 0.0:  # platens that stand still
+        return None, None
     load = (
         scene.rock.elasticity.uniaxial_modulus(scene.dim)
         * strain

@@ -44,6 +44,11 @@ class Gallery:
         if self._movie is not None:
             self._movie.add(stress, cracks)
 
+    def discard(self) -> None:
+        """Remove what there is of a movie that cannot be finished."""
+        if self._movie is not None:
+            self._movie.discard()
+
     def close(self, snapshot: Snapshot, history: np.ndarray, paths: list[np.ndarray], acoustic: np.ndarray) -> None:
         """Finish the movie, paint summary.png, give the painters' memory back.
 

@@ -11,10 +11,14 @@ import numpy as np
 from scipy.special import log_ndtr
 
 from rsmpm_ti.errors import refuse
+from rsmpm_ti.kinds import check_kinds, check_seed
 
 MODES = 1000
 """Random waves of a correlated field. Over seeds its covariance is exact; within one seed points far apart keep a
 chance correlation of about 1/sqrt(2 MODES) = 0.02, and the kurtosis is 3/(2 MODES) below that of a normal number."""
+
+SCALES = (1e-3, 1e3)
+"""Smallest and largest scale of the factors; beyond them the strengths given are not those of the rock that is run."""
 
 ROWS = 256
 """Particles whose waves are summed at a time: 2 MB, which a cache holds; twice as fast as 32 MB."""
@@ -63,21 +67,24 @@ class Weibull:
     varies = True
 
     def __post_init__(self):
+        check_kinds("heterogeneity", self)
         if not 0.5 <= self.shape <= 1000.0:
             raise refuse("heterogeneity.shape", self.shape, "in [0.5, 1000]", "rock has a modulus of 3 to 15")
         if not 1e-18 <= self.reference_volume <= 1e9:
             raise refuse("heterogeneity.reference_volume", self.reference_volume, "in [1e-18, 1e9], in m^2 (m^3 in 3D)")
-        if not (type(self.seed) is int and self.seed >= 0):
-            raise refuse("heterogeneity.seed", self.seed, "a whole number, zero or more")
+        check_seed("heterogeneity.seed", self.seed)
         if not (self.correlation_length == 0.0 or 1e-9 <= self.correlation_length <= 1e9):
             raise refuse("heterogeneity.correlation_length", self.correlation_length, "0 or in [1e-9, 1e9] m")
 
     def factors(self, x: np.ndarray, volume: np.ndarray) -> np.ndarray:
         """Strength factor k of each particle, [n].  x: initial positions [m], [n, dim]; volume [m^dim], [n]."""
-        smallest = math.pi ** (0.5 * x.shape[1]) * self.correlation_length ** x.shape[1]
         g = self._gaussian(x)
         # -ln(1 - Phi(g)) = -ln Phi(-g), which is exact far into both tails: never 0, never infinite
-        return (-log_ndtr(-g) * self.reference_volume / np.maximum(volume, smallest)) ** (1.0 / self.shape)
+        return (-log_ndtr(-g) * self.reference_volume / self.weakest_of(volume, x.shape[1])) ** (1.0 / self.shape)
+
+    def weakest_of(self, volume, dim: int):
+        """Volume [m^dim] whose strength a particle of a volume has: correlation leaves no smaller one its own."""
+        return np.maximum(volume, math.pi ** (0.5 * dim) * self.correlation_length**dim)
 
     def _gaussian(self, x: np.ndarray) -> np.ndarray:
         """Standard normal numbers, [n]: independent, or sqrt(2/N) sum_j cos(k_j x + phase_j).
@@ -91,3 +98,15 @@ class Weibull:
         phase = random.uniform(0.0, 2.0 * math.pi, MODES)
         sums = [np.cos(x[k : k + ROWS] @ waves + phase).sum(axis=1) for k in range(0, len(x), ROWS)]
         return math.sqrt(2.0 / MODES) * np.concatenate(sums)
+
+
+def check_scale(heterogeneity, volume: float, dim: int) -> None:
+    """Raises SceneError where particles of a volume [m^dim] would be stronger or weaker than any rock."""
+    if not isinstance(heterogeneity, Weibull):
+        return
+    ratio = heterogeneity.reference_volume / heterogeneity.weakest_of(volume, dim)
+    scale = float(ratio ** (1.0 / heterogeneity.shape))
+    if not SCALES[0] <= scale <= SCALES[1]:
+        allowed = f"such that the scale of strength is in [{SCALES[0]:g}, {SCALES[1]:g}], not {scale:.3g}"
+        remedy = "it follows from reference_volume, shape, correlation_length and dx"
+        raise refuse("heterogeneity.reference_volume", heterogeneity.reference_volume, allowed, remedy)

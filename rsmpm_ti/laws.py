@@ -14,13 +14,11 @@ from rsmpm_ti.averaging import Local, Nonlocal
 from rsmpm_ti.directional import Directional
 from rsmpm_ti.errors import refuse
 from rsmpm_ti.heterogeneity import Uniform, Weibull
+from rsmpm_ti.kinds import LARGEST, check_kinds, check_positive
 from rsmpm_ti.tensors import double_contraction, hughes_winget, isotropic, trace
 
-
-def _positive(owner: str, **values: float) -> None:
-    for name, value in values.items():
-        if not (math.isfinite(value) and value > 0.0):
-            raise refuse(f"{owner}.{name}", value, "a positive finite number")
+MOST_VISCOUS = 1e3
+"""Largest constant of artificial viscosity; useful ones are about 1."""
 
 
 @ti.data_oriented
@@ -40,7 +38,8 @@ class Hooke:
     plane_stress: bool = False
 
     def __post_init__(self):
-        _positive("elasticity", E=self.E)
+        check_kinds("elasticity", self)
+        check_positive("elasticity.E", self.E, "stiffness in Pa")
         if not -1.0 < self.nu < 0.5:
             raise refuse("elasticity.nu", self.nu, "in (-1, 0.5)", "at 0.5 the wave speed is infinite; use 0.499")
 
@@ -117,14 +116,17 @@ class MohrCoulomb:
     breaks = True
 
     def __post_init__(self):
-        _positive("criterion", cohesion=self.cohesion, tensile_strength=self.tensile_strength)
-        if not 0.0 <= self.friction_angle < 90.0:
-            raise refuse("criterion.friction_angle", self.friction_angle, "in [0, 90) degrees")
+        check_kinds("criterion", self)
+        check_positive("criterion.cohesion", self.cohesion, "stress in Pa")
+        check_positive("criterion.tensile_strength", self.tensile_strength, "stress in Pa")
+        if not 0.0 <= self.friction_angle <= 89.0:
+            raise refuse("criterion.friction_angle", self.friction_angle, "in [0, 89] degrees", "at 90 nothing breaks")
         if self.tensile_strength > self.apex:
             raise refuse(
                 "criterion.tensile_strength",
                 self.tensile_strength,
-                f"at most the apex of the Mohr-Coulomb cone, c cot(phi) = {self.apex:.6g} Pa",
+                f"at most the apex of the Mohr-Coulomb cone, c cot(phi) = {self.apex:.6g} Pa for cohesion = "
+                f"{self.cohesion:g} Pa and friction_angle = {self.friction_angle:g} degrees",
                 "beyond it the cut-off would never govern",
             )
 
@@ -222,9 +224,10 @@ class Clipped:
     directional = False
 
     def __post_init__(self):
+        check_kinds("after_failure", self)
         for name in ("tension_limit", "compression_limit"):
-            if not 0.0 <= getattr(self, name) < math.inf:
-                raise refuse(f"after_failure.{name}", getattr(self, name), "zero or more and finite, in Pa")
+            if not 0.0 <= getattr(self, name) <= LARGEST:
+                raise refuse(f"after_failure.{name}", getattr(self, name), f"in [0, {LARGEST:g}] Pa")
 
     @ti.func
     def pressure(self, bulk, J):
@@ -249,9 +252,10 @@ class BulkViscosity:
     c2: float = 0.06
 
     def __post_init__(self):
+        check_kinds("viscosity", self)
         for name in ("c1", "c2"):
-            if not 0.0 <= getattr(self, name) < math.inf:
-                raise refuse(f"viscosity.{name}", getattr(self, name), "zero or more and finite")
+            if not 0.0 <= getattr(self, name) <= MOST_VISCOUS:
+                raise refuse(f"viscosity.{name}", getattr(self, name), f"in [0, {MOST_VISCOUS:g}]")
 
     acts = True
 
@@ -283,9 +287,8 @@ class Rock:
     heterogeneity: Uniform | Weibull = Uniform()
 
     def __post_init__(self):
-        _positive("rock", density=self.density)
-        if not 0.0 < self.wave_speed() < math.inf:
-            raise refuse("rock.density", self.density, "such that the wave speed is positive and finite")
+        check_kinds("rock", self)
+        check_positive("rock.density", self.density, "density in kg/m^3")
 
     def wave_speed(self, time_scale: float = 1.0) -> float:
         """Speed of the fastest wave, c_p unless in plane stress [m/s], with the density scaled by time_scale^2."""

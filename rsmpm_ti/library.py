@@ -1,5 +1,6 @@
 """Find a scene, apply overrides, and say clearly what is wrong with either."""
 
+import contextlib
 import dataclasses
 import difflib
 import functools
@@ -13,8 +14,9 @@ import typing
 from dataclasses import replace
 from pathlib import Path
 
-from rsmpm_ti.errors import SceneError
-from rsmpm_ti.record import KNOWN, entry_kinds, fits, members, phrase, read_scene
+from rsmpm_ti.errors import SceneError, short, shown
+from rsmpm_ti.kinds import entry_kinds, fits, members, phrase
+from rsmpm_ti.record import KNOWN, read_scene
 from rsmpm_ti.spec import Scene
 
 SHIPPED = Path(__file__).parent / "scenes"
@@ -41,10 +43,12 @@ def find(name: str) -> Path:
     if path.suffix in (".py", ".json"):
         if path.is_file():
             return path
-        raise SceneError(f"scene file {name} does not exist")
+        raise SceneError(f"scene file {short(name)} does not exist")
     scenes = available()
     if name not in scenes:
-        raise SceneError(f"no scene named {name!r}; there are: {', '.join(sorted(scenes)) or 'none'} (or give a path)")
+        raise SceneError(
+            f"no scene named {shown(name)}; there are: {', '.join(sorted(scenes)) or 'none'} (or give a path)"
+        )
     return scenes[name]
 
 
@@ -68,10 +72,24 @@ def load_scene(name: str, *, quick: bool = False, settings: dict[str, str] | Non
             raise SceneError("a recorded scene has no keywords; use dotted names, for example schedule.cfl=0.3")
         scene = read_scene(path)
     else:
-        scene = _call(function, path, (quick_keywords if quick else {}) | overrides, settings)
+        with _naming(settings):
+            scene = _call(function, path, (quick_keywords if quick else {}) | overrides, settings)
     for key, text in fields.items():
-        scene = _with_field(scene, Scene, key, key.split("."), text)
+        with _naming({key: text}):
+            scene = _with_field(scene, Scene, key, key.split("."), text)
     return scene
+
+
+@contextlib.contextmanager
+def _naming(settings: dict[str, str]):
+    """Says which settings led to a refusal that names none of them: a keyword becomes fields of other names."""
+    try:
+        yield
+    except SceneError as error:
+        if not settings or any(short(key) in str(error) for key in settings):
+            raise
+        given = ", ".join(f"{short(key)}={short(text)}" for key, text in settings.items())
+        raise SceneError(f"{error} (set: {given})") from None
 
 
 def _load(path: Path):
@@ -91,8 +109,16 @@ def _load(path: Path):
             None,
         )
         place = f" line {line}" if line else ""
-        raise SceneError(f"{path}{place} cannot be loaded: {type(error).__name__}: {error}") from None
+        raise SceneError(f"{path}{place} cannot be loaded: {_said(error)}") from None
     return module
+
+
+def _said(error: BaseException) -> str:
+    """What an exception of a scene file says, which may be too much, or nothing that can be shown."""
+    try:
+        return short(f"{type(error).__name__}: {error}")
+    except Exception:
+        return type(error).__name__
 
 
 def _function(path: Path):
@@ -103,8 +129,8 @@ def _function(path: Path):
     except (AttributeError, TypeError, ValueError):
         raise SceneError(f"{path} defines no function scene(); it must return a Scene") from None
     quick = getattr(module, "QUICK", {})
-    if not isinstance(quick, dict):
-        raise SceneError(f"{path}: QUICK must be a dict of keywords of scene(), not a {type(quick).__name__}")
+    if not (isinstance(quick, dict) and all(isinstance(key, str) for key in quick)):
+        raise SceneError(f"{path}: QUICK must be a dict of keywords of scene(), not {shown(quick)}")
     return module.scene, parameters, quick
 
 
@@ -129,17 +155,17 @@ def _call(function, path: Path, overrides: dict, settings: dict[str, str]) -> Sc
         scene = function(**values)
     except SceneError:
         raise
-    except Exception as error:
-        raise SceneError(f"{path}: scene({values}) failed: {type(error).__name__}: {error}") from None
+    except (Exception, SystemExit) as error:
+        raise SceneError(f"{path}: scene({short(str(values))}) failed: {_said(error)}") from None
     if not isinstance(scene, Scene):
         raise SceneError(f"{path}: scene() must return a Scene, not {type(scene).__name__}")
     return scene
 
 
 def _unknown(key: str, names: list[str], owner: str, more: str = "", also=()) -> str:
-    close = difflib.get_close_matches(key, [*names, *also], n=1)
+    close = difflib.get_close_matches(key[:100], [*names, *also], n=1)
     hint = f"; did you mean {close[0]}?" if close else ""
-    return f"{owner} has no setting {key!r}; it has: {', '.join(names)}{more}{hint}"
+    return f"{owner} has no setting {shown(key)}; it has: {', '.join(names)}{more}{hint}"
 
 
 def _kind_of(parameter: inspect.Parameter):
@@ -179,12 +205,12 @@ def _parse(key: str, text: str, wanted):
             return classes[text]()
         except TypeError as error:
             raise SceneError(
-                f"{key}={text} is refused: it needs parameters ({error}); build it in a scene file"
+                f"{key}={short(text)} is refused: it needs parameters ({error}); build it in a scene file"
             ) from None
     for value in _readings(text):
         if fits(value, wanted):
             return value
-    raise SceneError(f"{key}={text} is refused: it must be {phrase(wanted)}")
+    raise SceneError(f"{short(key)}={short(text)} is refused: it must be {phrase(wanted)}")
 
 
 def _with_field(owner, kind, key: str, path: list[str], text: str):
@@ -195,11 +221,11 @@ def _with_field(owner, kind, key: str, path: list[str], text: str):
     name, rest = path[0], path[1:]
     if isinstance(owner, tuple):
         if name not in map(str, range(len(owner))):
-            raise SceneError(f"{key}: {name!r} is no index; there are {len(owner)} entries, counted from 0")
+            raise SceneError(f"{short(key)}: {shown(name)} is no index; there are {len(owner)} entries, counted from 0")
         k = int(name)
         return (*owner[:k], _with_field(owner[k], entry_kinds(kind, len(owner))[k], key, rest, text), *owner[k + 1 :])
     if not dataclasses.is_dataclass(owner):
-        raise SceneError(f"{key}: {name!r} is no field of a {type(owner).__name__}")
+        raise SceneError(f"{short(key)}: {shown(name)} is no field of a {type(owner).__name__}")
     names = [f.name for f in dataclasses.fields(owner)]
     if name not in names:
         raise SceneError(_unknown(name, names, type(owner).__name__))
@@ -209,7 +235,9 @@ def _with_field(owner, kind, key: str, path: list[str], text: str):
     except SceneError:
         raise
     except (TypeError, ValueError, AttributeError, ArithmeticError) as error:
-        raise SceneError(f"{key}={text} is refused: {type(owner).__name__} cannot be built: {error}") from None
+        raise SceneError(
+            f"{short(key)}={short(text)} is refused: {type(owner).__name__} cannot be built: {error}"
+        ) from None
 
 
 def scene_name(name: str) -> str:
@@ -224,5 +252,10 @@ def machine() -> dict[str, str]:
     import platform
 
     packages = ("taichi", "numpy", "scipy", "meshio", "matplotlib", "imageio")
-    versions = {name: importlib.metadata.version(name) for name in packages}
+    versions = {}
+    for name in packages:
+        try:
+            versions[name] = importlib.metadata.version(name)
+        except importlib.metadata.PackageNotFoundError:  # a movie is not written without imageio, but a run goes on
+            versions[name] = "not installed"
     return {"python": sys.version.split()[0], **versions, "system": platform.system(), "machine": platform.machine()}

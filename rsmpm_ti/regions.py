@@ -10,9 +10,13 @@ from dataclasses import dataclass
 import numpy as np
 
 from rsmpm_ti.errors import refuse
+from rsmpm_ti.kinds import LEAST, check_kinds, check_positive
 
 FARTHEST = 1e9
 """Largest coordinate and length [m]: beyond it a specimen is a mistake, and squares and node numbers overflow."""
+
+DEEPEST, MOST_PARTS = 20, 10_000
+"""Regions within regions, and all of them: every point of a specimen is asked of each."""
 
 
 def check_coordinates(name: str, values: tuple[float, ...]) -> None:
@@ -21,14 +25,29 @@ def check_coordinates(name: str, values: tuple[float, ...]) -> None:
         raise refuse(name, values, f"2 or 3 finite coordinates in metres, of size at most {FARTHEST:g}")
 
 
-def _positive(name: str, value: float) -> None:
-    if not 0.0 < value <= FARTHEST:
-        raise refuse(name, value, f"a positive finite length in metres, at most {FARTHEST:g}")
+def _check_length(name: str, value: float) -> None:
+    check_positive(name, value, "length in metres", most=FARTHEST)
 
 
 def _dimensions(parts: tuple) -> set[int]:
     """The dimensions of regions; a slit, which goes through the thickness in 3D, has none of its own."""
     return {len(part.bounds()[0]) for part in parts if not isinstance(part, Slit)}
+
+
+def _parts(region) -> tuple:
+    """The regions that a region is made of."""
+    if isinstance(region, Union):
+        return region.parts
+    return (region.whole, *region.removed) if isinstance(region, Difference) else ()
+
+
+def _check_nest(name: str, parts: tuple) -> None:
+    level, count = parts, len(parts)
+    for _ in range(DEEPEST):
+        level = tuple(inner for part in level for inner in _parts(part))
+        count += len(level)
+    if level or count > MOST_PARTS:
+        raise refuse(name, parts, f"at most {MOST_PARTS} regions, nested at most {DEEPEST} deep")
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -39,10 +58,12 @@ class Box:
     upper: tuple[float, ...]
 
     def __post_init__(self):
+        check_kinds("box", self)
         check_coordinates("box.lower", self.lower)
         check_coordinates("box.upper", self.upper)
-        if len(self.lower) != len(self.upper) or not all(a < b for a, b in zip(self.lower, self.upper, strict=False)):
-            raise refuse("box.upper", self.upper, f"above box.lower = {self.lower} on every axis")
+        edges = [b - a for a, b in zip(self.lower, self.upper, strict=False)]
+        if len(self.lower) != len(self.upper) or not min(edges) >= LEAST:
+            raise refuse("box.upper", self.upper, f"above box.lower = {self.lower} by {LEAST:g} m on every axis")
 
     def contains(self, x: np.ndarray) -> np.ndarray:
         """x [n, dim] -> bool [n]."""
@@ -60,8 +81,9 @@ class Disc:
     radius: float
 
     def __post_init__(self):
+        check_kinds("disc", self)
         check_coordinates("disc.centre", self.centre)
-        _positive("disc.radius", self.radius)
+        _check_length("disc.radius", self.radius)
 
     def contains(self, x: np.ndarray) -> np.ndarray:
         return np.sum((x - np.array(self.centre)) ** 2, axis=1) < self.radius**2
@@ -84,11 +106,12 @@ class Slit:
     rounded: bool = False
 
     def __post_init__(self):
+        check_kinds("slit", self)
         check_coordinates("slit.centre", self.centre)
-        _positive("slit.length", self.length)
-        _positive("slit.width", self.width)
-        if not math.isfinite(self.angle):
-            raise refuse("slit.angle", self.angle, "a finite angle in degrees")
+        _check_length("slit.length", self.length)
+        _check_length("slit.width", self.width)
+        if not abs(self.angle) <= 360.0:
+            raise refuse("slit.angle", self.angle, "in [-360, 360] degrees")
         if self.width > self.length:
             raise refuse("slit.width", self.width, f"at most slit.length = {self.length} m")
 
@@ -123,7 +146,9 @@ class Union:
     parts: "tuple[Region, ...]"
 
     def __post_init__(self):
-        if not self.parts or len(_dimensions(self.parts)) > 1:
+        check_kinds("union", self)
+        _check_nest("union.parts", self.parts)
+        if not self.parts or len({len(part.bounds()[0]) for part in self.parts}) > 1:
             raise refuse("union.parts", self.parts, "at least one region, and all of one dimension")
 
     def contains(self, x: np.ndarray) -> np.ndarray:
@@ -142,6 +167,9 @@ class Difference:
     removed: "tuple[Region, ...]"
 
     def __post_init__(self):
+        check_kinds("difference", self)
+        _check_nest("difference.whole", (self.whole,))
+        _check_nest("difference.removed", self.removed)
         if len(_dimensions((self.whole, *self.removed))) > 1:
             raise refuse("difference.removed", self.removed, "regions of the dimension of difference.whole")
 

@@ -14,7 +14,9 @@ from pathlib import Path
 import numpy as np
 
 from rsmpm_ti import __version__
+from rsmpm_ti.consistency import check_precision
 from rsmpm_ti.errors import SceneError, UnstableRun, refuse
+from rsmpm_ti.kernel_cache import ensure_kernel_cache
 from rsmpm_ti.result import Progress, Result
 from rsmpm_ti.run_folder import forget, prepare, write_all, write_record
 from rsmpm_ti.spec import Scene
@@ -48,9 +50,10 @@ def simulate(
     """
     if precision not in ("f64", "f32"):
         raise refuse("precision", precision, "'f64' or 'f32'")
+    check_precision(scene, precision)
     if arch not in ("cpu", "cuda"):
         raise refuse("arch", arch, "'cpu' or 'cuda'")
-    if threads is not None and not (isinstance(threads, int) and 1 <= threads <= 1024):
+    if threads is not None and not (type(threads) is int and 1 <= threads <= 1024):
         raise refuse("threads", threads, "a whole number from 1 to 1024")
     if deterministic and arch != "cpu":
         raise refuse(
@@ -97,6 +100,7 @@ class Settings:
 def start_taichi(precision: str, arch: str, threads: int | None):
     import taichi as ti
 
+    ensure_kernel_cache()
     real = ti.f64 if precision == "f64" else ti.f32
     # never ti.gpu: it crashes without Vulkan, or runs silently on a software Vulkan with wrong numbers
     wanted = [ti.cuda, ti.cpu] if arch == "cuda" else ti.cpu

@@ -25,7 +25,7 @@ def prepare(scene: Scene, out: str | os.PathLike, *, keep: bool = False) -> Path
     try:
         (out / "frames").mkdir(parents=True, exist_ok=True)
         probe_file = out / ".writable"
-        probe_file.touch()
+        probe_file.write_bytes(bytes(4096))  # an empty file is made on a full disk too
         probe_file.unlink()
         for part in (*out.glob(".*.part*"), *out.glob("frames/.*.part*")):  # of a run that was killed
             part.unlink()
@@ -33,9 +33,14 @@ def prepare(scene: Scene, out: str | os.PathLike, *, keep: bool = False) -> Path
             forget(out, frames=0, vtus=0)
             for old in out.glob("checkpoint*.npz"):
                 old.unlink()
-    except OSError as error:
-        raise SceneError(f"output folder {out} cannot be written: {error.strerror}; give another with --out") from None
+    except (OSError, ValueError) as error:  # ValueError: a name that no file can have
+        raise _unwritable(out, error) from None
     return out
+
+
+def _unwritable(out: Path, error: Exception) -> SceneError:
+    reason = getattr(error, "strerror", None) or error
+    return SceneError(f"output folder {out} cannot be written: {reason}; make room, or give another with --out")
 
 
 def forget(out: Path, *, frames: int, vtus: int) -> None:
@@ -47,7 +52,7 @@ def forget(out: Path, *, frames: int, vtus: int) -> None:
 
 
 def write_record(out: Path, scene: Scene, name: str, precision: str) -> None:
-    """scene.json: what was run, by what, on what."""
+    """scene.json: what was run, by what, on what. Raises SceneError where it cannot be written."""
     from rsmpm_ti.library import machine
     from rsmpm_ti.output import write_json
     from rsmpm_ti.record import to_plain
@@ -57,7 +62,10 @@ def write_record(out: Path, scene: Scene, name: str, precision: str) -> None:
         "rsmpm_ti": __version__, "name": name, "precision": precision, "seeds": seeds, "machine": machine(),
         "time_scale": scene.time_scale, "scene": to_plain(scene),
     }  # fmt: skip
-    write_json(out / "scene.json", record)
+    try:
+        write_json(out / "scene.json", record)
+    except OSError as error:
+        raise _unwritable(out, error) from None
 
 
 def write_all(writes: list[Callable[[], None]]) -> None:

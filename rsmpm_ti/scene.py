@@ -5,7 +5,8 @@ import sys
 from dataclasses import replace
 from pathlib import Path
 
-from rsmpm_ti.errors import SceneError, UnstableRun
+from rsmpm_ti.consistency import BYTES_PER_NODE, BYTES_PER_PARTICLE
+from rsmpm_ti.errors import SceneError, UnstableRun, shown
 from rsmpm_ti.library import available, find, keywords_of, load_scene, scene_name
 from rsmpm_ti.quasi_static import estimate
 from rsmpm_ti.spec import Scene
@@ -15,9 +16,6 @@ QUICK_FRAMES, QUICK_ROWS = 10, 250
 
 PARTICLE_STEPS_PER_S = 8e6
 """What `--check` assumes for its estimate: measured for quadratic B-splines on two cores; see README."""
-
-BYTES_PER_PARTICLE, BYTES_PER_NODE = 200, 72
-"""What `--check` assumes for memory: fields of a 2D scene with viscosity and failure, f64."""
 
 
 def parser() -> argparse.ArgumentParser:
@@ -52,7 +50,7 @@ def build(options: argparse.Namespace) -> Scene:
     for item in options.settings:
         name, separator, value = item.partition("=")
         if not separator or not name.strip():
-            raise SceneError(f"--set {item!r} is refused: write name=value")
+            raise SceneError(f"--set {shown(item)} is refused: write name=value")
         settings[name.strip()] = value.strip()
     scene = load_scene(options.scene, quick=options.quick, settings=settings)
     output = scene.output
@@ -109,7 +107,7 @@ def list_scenes() -> str:
     for name, path in available().items():
         try:
             pairs = keywords_of(path).items()
-            text = ", ".join(f"{k}={v:g}" if isinstance(v, float) else f"{k}={v}" for k, v in pairs)
+            text = ", ".join(f"{k}={v:g}" if isinstance(v, float) else f"{k}={shown(v)}" for k, v in pairs)
         except SceneError as error:  # one bad file does not hide the others
             text = "cannot be listed: " + " ".join(str(error).split())
         lines.append(f"{name:<10} {text}")

@@ -11,6 +11,7 @@ from typing import NamedTuple
 import numpy as np
 
 from rsmpm_ti.errors import SceneError, refuse
+from rsmpm_ti.kinds import check_kinds, check_seed
 from rsmpm_ti.regions import Slit
 
 BRIDGE_LIMIT = 0.02
@@ -22,7 +23,7 @@ the static reference solution shows to be a flaw; one of one cell leaves 0.11 an
 
 
 def _check_per_axis(value: int) -> None:
-    if not (isinstance(value, int) and 1 <= value <= 8):
+    if not 1 <= value <= 8:
         raise refuse("seeding.particles_per_axis", value, "a whole number from 1 to 8")
 
 
@@ -118,6 +119,7 @@ class Lattice:
     fitted: bool = False
 
     def __post_init__(self):
+        check_kinds("seeding", self)
         _check_per_axis(self.particles_per_axis)
 
     def fill(self, region, origin: np.ndarray, dx: float) -> Seeds:
@@ -139,17 +141,17 @@ class Jittered:
     fitted: bool = False
 
     def __post_init__(self):
+        check_kinds("seeding", self)
         _check_per_axis(self.particles_per_axis)
         if not 0.0 <= self.amount < 0.5:
             raise refuse("seeding.amount", self.amount, "in [0, 0.5)", "at 0.5 two particles can coincide")
-        if not (isinstance(self.seed, int) and self.seed >= 0):
-            raise refuse("seeding.seed", self.seed, "a whole number, zero or more")
+        check_seed("seeding.seed", self.seed)
 
     def fill(self, region, origin: np.ndarray, dx: float) -> Seeds:
         """Particles of a region. Membership is decided before the move, so that faces stay smooth
         in the mean and the number of particles does not depend on the seed; no particle enters a slit."""
         lattice = Lattice(particles_per_axis=self.particles_per_axis, fitted=self.fitted).fill(region, origin, dx)
-        reach = self.amount * dx / self.particles_per_axis
+        reach = abs(self.amount) * dx / self.particles_per_axis
         moved = lattice.x + np.random.default_rng(self.seed).uniform(-reach, reach, lattice.x.shape)
         return Seeds(np.where(region.contains(moved)[:, None], moved, lattice.x), lattice.volume)
 
@@ -180,7 +182,12 @@ def slit_bridge(seeds: Seeds, slit: Slit, shape, dx: float, origin: np.ndarray) 
 
 
 def check_slit(region, slit: Slit, seeding, shape, dx: float, origin: np.ndarray) -> None:
-    """Refuse a slit whose faces stay glued through shared nodes, naming a width that would do."""
+    """Refuse a slit beside its body, or whose faces stay glued through shared nodes, naming a width that would do."""
+    lower, upper = (bound[:2] for bound in region.bounds())
+    low, high = slit.bounds()
+    if np.any(low >= upper) or np.any(high <= lower):
+        box = f"in its body, whose lower and upper corners are {lower.tolist()} and {upper.tolist()} m"
+        raise refuse("slit.centre", slit.centre, box, "it cuts nothing where it is")
     bridge = _bridge_of_width(region, slit, slit.width, seeding, shape, dx, origin)
     if bridge <= BRIDGE_LIMIT:
         return

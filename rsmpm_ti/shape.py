@@ -11,6 +11,7 @@ import numpy as np
 import taichi as ti
 
 from rsmpm_ti.errors import refuse
+from rsmpm_ti.kinds import check_kinds
 
 
 @ti.data_oriented
@@ -53,6 +54,7 @@ class Gimp:
     crack_band = 1.5
 
     def __post_init__(self):
+        check_kinds("shape", self)
         if not 0.0 < self.half_width <= 0.5:
             raise refuse("shape.half_width", self.half_width, "in (0, 0.5] cells", "use 0.25 for 2 particles per axis")
 

@@ -5,19 +5,17 @@ A law gives the share of strength that is left after a crack strain. Crack band 
 softening branch is scaled by h. `strength` is the value at which softening starts [Pa], `energy` G_f [J/m^2].
 """
 
-import math
 from dataclasses import dataclass
 
 import taichi as ti
 
-from rsmpm_ti.errors import refuse
+from rsmpm_ti.kinds import check_kinds, check_positive
 
 
 def _check_energies(law) -> None:
+    check_kinds("softening", law)
     for name in ("G_f_I", "G_f_II"):
-        value = getattr(law, name)
-        if not (math.isfinite(value) and value > 0.0):
-            raise refuse(f"softening.{name}", value, "a positive finite energy per area in J/m^2")
+        check_positive(f"softening.{name}", getattr(law, name), "energy per area in J/m^2")
 
 
 @ti.data_oriented

@@ -11,16 +11,27 @@ import numpy as np
 
 from rsmpm_ti.boundaries import Fixed, Platen, Wall
 from rsmpm_ti.confinement import check_confined_rock, check_confinement
+from rsmpm_ti.consistency import check_bodies, check_loading, check_memory, check_motion
 from rsmpm_ti.directional import check_cracks
 from rsmpm_ti.errors import SceneError, refuse
+from rsmpm_ti.heterogeneity import check_scale
+from rsmpm_ti.kinds import check_kinds, check_positive, check_size
 from rsmpm_ti.laws import Rock, Unbreakable
-from rsmpm_ti.quasi_static import LARGEST, LEAST_TRANSITS, estimate
-from rsmpm_ti.regions import Region, check_coordinates, slits_of
+from rsmpm_ti.quasi_static import LARGEST, estimate
+from rsmpm_ti.regions import FARTHEST, Region, check_coordinates, slits_of
 from rsmpm_ti.seeding import Jittered, Lattice, Seeds, check_slit
 from rsmpm_ti.shape import Gimp, Linear, QuadraticBSpline
 from rsmpm_ti.starts import Affine, AtRest, Press, Ramp
-from rsmpm_ti.time_step import MOST, check_step
+from rsmpm_ti.time_step import LEAST_CFL, MOST, check_step
 from rsmpm_ti.transfer import Apic, PicFlip
+
+MOST_BOUNDARIES, MOST_BODIES = 32, 1000
+
+FINEST = 1e-9
+"""Smallest cell [m]: below it rock is no continuum."""
+
+FINEST_SHARE = 1e-9
+"""Smallest cell over the largest coordinate: round-off of a particle's place is then 1e-7 of a cell."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -37,19 +48,24 @@ class Domain:
     outside: str = "stop"
 
     def __post_init__(self):
-        if not (math.isfinite(self.dx) and self.dx > 0.0):
-            raise refuse("domain.dx", self.dx, "a positive cell size in metres")
+        check_kinds("domain", self)
+        check_positive("domain.dx", self.dx, "cell size in metres", least=FINEST, most=FARTHEST)
         if len(self.lower) not in (2, 3) or len(self.lower) != len(self.upper):
             raise refuse("domain.upper", self.upper, "2 or 3 coordinates, as many as domain.lower")
         check_coordinates("domain.lower", self.lower)
         check_coordinates("domain.upper", self.upper)
         edges = [float(b) - float(a) for a, b in zip(self.lower, self.upper, strict=True)]
         if not all(edge >= self.dx for edge in edges):
-            raise refuse("domain.upper", self.upper, f"at least one cell above domain.lower = {self.lower}")
+            allowed = f"at least one cell, dx = {self.dx}, above domain.lower = {self.lower}"
+            raise refuse("domain.upper", self.upper, allowed)
         if self.grid not in ("dense", "sparse", "auto"):
             raise refuse("domain.grid", self.grid, "'dense', 'sparse' or 'auto'")
         if self.outside not in ("stop", "drop"):
             raise refuse("domain.outside", self.outside, "'stop' or 'drop'")
+        far = max(map(abs, (*self.lower, *self.upper)))
+        if not self.dx >= FINEST_SHARE * far:
+            allowed = f"at least {FINEST_SHARE * far:.4g} m, {FINEST_SHARE:g} of the largest coordinate"
+            raise refuse("domain.dx", self.dx, allowed, "move the domain to the origin: places are lost to round-off")
         nodes = math.prod(edge / float(self.dx) + 1.0 for edge in edges)
         if nodes > MOST:
             raise refuse("domain.dx", self.dx, f"such that the grid has at most {MOST:.3g} nodes, not {nodes:.3g}")
@@ -69,10 +85,9 @@ class Body:
     spin: float = 0.0
 
     def __post_init__(self):
-        if self.velocity is not None and not all(map(math.isfinite, self.velocity)):
-            raise refuse("body.velocity", self.velocity, "finite components in m/s")
-        if not math.isfinite(self.spin):
-            raise refuse("body.spin", self.spin, "a finite rate in rad/s")
+        check_kinds("body", self)
+        check_size("body.velocity", self.velocity or (), "components in m/s")
+        check_size("body.spin", (self.spin,), "a rate in rad/s")
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -99,18 +114,21 @@ class Loading:
     confinement: float = 0.0
 
     def __post_init__(self):
-        number = isinstance(self.time_scale, (int, float)) and 1.0 <= self.time_scale <= LARGEST
+        check_kinds("loading", self)
+        if len(self.boundaries) > MOST_BOUNDARIES:
+            allowed = f"at most {MOST_BOUNDARIES} of them, as every kernel holds code for each"
+            raise refuse("loading.boundaries", self.boundaries, allowed)
+        number = not isinstance(self.time_scale, str) and 1.0 <= self.time_scale <= LARGEST
         if not (number or self.time_scale == "auto"):
             allowed = f"in [1, {LARGEST:g}] or 'auto'"
             raise refuse("loading.time_scale", self.time_scale, allowed, "1 is the true density")
         if not 1e-6 <= self.quasi_static <= 1.0:
             raise refuse("loading.quasi_static", self.quasi_static, "in [1e-6, 1]", "it is a share of the load")
-        if self.body_force is not None and not all(map(math.isfinite, self.body_force)):
-            raise refuse("loading.body_force", self.body_force, "finite components in m/s^2")
+        check_size("loading.body_force", self.body_force or (), "components in m/s^2")
         if self.force_field is not None and not callable(getattr(self.force_field, "acceleration", None)):
             raise refuse("loading.force_field", self.force_field, "an object with a ti.func acceleration(X, t)")
-        if self.width is not None and not (math.isfinite(self.width) and self.width > 0.0):
-            raise refuse("loading.width", self.width, "a positive length in metres")
+        if self.width is not None:
+            check_positive("loading.width", self.width, "length in metres (area in 3D)")
         check_confinement(self.confinement)
 
     @property
@@ -152,17 +170,17 @@ class Schedule:
     adaptive: bool = False
 
     def __post_init__(self):
+        check_kinds("schedule", self)
         if (self.strain_end is None) == (self.t_end is None):
             raise SceneError("schedule: give exactly one of strain_end (platen strain) and t_end (seconds)")
         for name in ("t_end", "dt"):
             value = getattr(self, name)
-            if value is not None and not (math.isfinite(value) and value > 0.0):
-                raise refuse(f"schedule.{name}", value, "a positive time in seconds")
-        if self.strain_end is not None and not (math.isfinite(self.strain_end) and 0.0 < abs(self.strain_end) < 0.5):
+            if value is not None:
+                check_positive(f"schedule.{name}", value, "time in seconds", least=1e-30)
+        if self.strain_end is not None and not 0.0 < abs(self.strain_end) < 0.5:
             raise refuse("schedule.strain_end", self.strain_end, "a strain of size in (0, 0.5)")
-        if not (math.isfinite(self.cfl) and self.cfl > 0.0):
-            raise refuse("schedule.cfl", self.cfl, "positive")
-        if not (type(self.rows) is int and 1 <= self.rows <= 1_000_000):
+        check_positive("schedule.cfl", self.cfl, "share of the time a wave needs for one cell", LEAST_CFL, 1e3)
+        if not 1 <= self.rows <= 1_000_000:
             raise refuse("schedule.rows", self.rows, "a whole number from 1 to 1 000 000")
 
 
@@ -182,14 +200,15 @@ class Output:
     stress_limit: float | None = None
 
     def __post_init__(self):
+        check_kinds("output", self)
         for name in ("frames", "vtu"):
             value = getattr(self, name)
-            if not (type(value) is int and 0 <= value <= 10_000):
+            if not 0 <= value <= 10_000:
                 raise refuse(f"output.{name}", value, "a whole number from 0 to 10 000")
         if self.painter not in ("raster", "ggui"):
             raise refuse("output.painter", self.painter, "'raster' or 'ggui'")
-        if self.stress_limit is not None and not (math.isfinite(self.stress_limit) and self.stress_limit > 0.0):
-            raise refuse("output.stress_limit", self.stress_limit, "a positive stress in Pa")
+        if self.stress_limit is not None:
+            check_positive("output.stress_limit", self.stress_limit, "stress in Pa")
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -208,8 +227,12 @@ class Scene:
     output: Output = field(default_factory=Output)
 
     def __post_init__(self):
-        if not self.bodies:
-            raise SceneError("scene.bodies is empty: give at least one Body")
+        check_kinds("scene", self)
+        if len(self.title) > 200 or not self.title.isprintable():
+            raise refuse("scene.title", self.title, "at most 200 printable characters in one line")
+        if not 0 < len(self.bodies) <= MOST_BODIES:
+            few = f"has {len(self.bodies)} entries" if self.bodies else "is empty"
+            raise SceneError(f"scene.bodies {few}: give at least one Body, at most {MOST_BODIES}")
         if self.order not in ("musl", "usf", "usl"):
             raise refuse("scene.order", self.order, "'musl', 'usf' or 'usl'")
         if self.order == "usl" and isinstance(self.shape, Linear):
@@ -220,66 +243,14 @@ class Scene:
         if self.dim == 3 and self.rock.elasticity.plane_stress:
             raise refuse("rock.elasticity.plane_stress", True, "False in 3D", "a plate is a 2D scene")
         check_confined_rock(self.loading.confinement, self.rock.elasticity)
-        self._check_bodies()
-        self._check_loading()
+        check_bodies(self)
+        check_loading(self)
         check_cracks(self.rock, self.shape, self.dim, self.domain.dx)
+        for body in self.bodies:
+            volume = (self.domain.dx / body.seeding.particles_per_axis) ** self.dim
+            check_scale(self.rock.heterogeneity, volume, self.dim)
         check_step(self)
-
-    def _check_bodies(self) -> None:
-        lower, upper = np.array(self.domain.lower), np.array(self.domain.upper)
-        count = 0.0
-        for k, body in enumerate(self.bodies):
-            low, high = body.region.bounds()
-            if len(low) != self.dim:
-                raise SceneError(f"bodies[{k}].region has {len(low)} dimensions, domain has {self.dim}")
-            slack = 1e-9 * (upper - lower)
-            if np.any(low < lower - slack) or np.any(high > upper + slack):
-                raise SceneError(
-                    f"bodies[{k}].region from {low.tolist()} to {high.tolist()} m lies outside the domain from "
-                    f"{list(self.domain.lower)} to {list(self.domain.upper)} m; enlarge the domain or move the body"
-                )
-            count += math.prod((high - low) / self.domain.dx * body.seeding.particles_per_axis)
-            if body.velocity is not None and len(body.velocity) != self.dim:
-                raise refuse(f"bodies[{k}].velocity", body.velocity, f"{self.dim} components in m/s")
-            if isinstance(self.shape, Gimp) and not math.isclose(
-                self.shape.half_width, 0.5 / body.seeding.particles_per_axis
-            ):
-                fitting = f"{0.5 / body.seeding.particles_per_axis} for this seeding"
-                remedy = "particle domains would overlap or leave gaps"
-                raise refuse("shape.half_width", self.shape.half_width, fitting, remedy)
-        if count > MOST:
-            most = f"such that bodies have at most {MOST:.3g} particles, not {count:.3g}"
-            raise refuse("domain.dx", self.domain.dx, most)
-
-    def _check_loading(self) -> None:
-        loading, domain = self.loading, self.domain
-        if loading.body_force is not None and len(loading.body_force) != self.dim:
-            raise refuse("loading.body_force", loading.body_force, f"{self.dim} components in m/s^2")
-        for k, boundary in enumerate(loading.boundaries):
-            if boundary.axis >= self.dim:
-                raise refuse(f"boundaries[{k}].axis", boundary.axis, f"below the dimension {self.dim}")
-            cells = (boundary.position - domain.lower[boundary.axis]) / domain.dx
-            if abs(cells - round(cells)) > 1e-3:
-                nearest = f"the nearest is {domain.lower[boundary.axis] + round(cells) * domain.dx:.9g} m"
-                raise refuse(f"boundaries[{k}].position", boundary.position, "on a plane of grid nodes", nearest)
-        if self.schedule.strain_end is not None or isinstance(loading.start, Affine):
-            if loading.platens is None:
-                raise SceneError("strain_end and the Affine start need two platens that face each other; give t_end")
-            if loading.width is None:
-                raise SceneError("loading.width is missing: platen forces need a loaded width to become stress")
-        if loading.platens and not loading.height > 0.0:
-            upper = loading.boundaries.index(loading.platens[1])
-            raise refuse(f"boundaries[{upper}].position", loading.platens[1].position, "above the lower platen's")
-        if self.schedule.strain_end is not None and not loading.strain_rate * self.schedule.strain_end > 0.0:
-            sign = f"of the sign of the platens' strain rate {loading.strain_rate:.6g} 1/s"
-            raise refuse("schedule.strain_end", self.schedule.strain_end, sign)
-        if isinstance(loading.start, Press) and self.schedule.strain_end is not None:
-            raise SceneError("start = Press stops the platens itself: give t_end, hold included, no strain_end")
-        if isinstance(loading.start, (Ramp, Press)) and loading.platens:
-            transits = loading.start.time * self.wave_speed / loading.height
-            if transits < LEAST_TRANSITS * (1.0 - 1e-9):
-                least = f"at least {LEAST_TRANSITS * loading.height / self.wave_speed:.4g} s, 5 wave transits"
-                raise refuse("start.time", loading.start.time, least)
+        check_motion(self)
 
     @property
     def dim(self) -> int:
@@ -310,8 +281,9 @@ class Scene:
     def t_end(self) -> float:
         if self.schedule.t_end is not None:
             return self.schedule.t_end
-        ramp = 0.5 * self.loading.start.time if isinstance(self.loading.start, Ramp) else 0.0
-        return self.schedule.strain_end / self.loading.strain_rate + ramp
+        at_full_speed = self.schedule.strain_end / self.loading.strain_rate
+        start = self.loading.start
+        return start.duration(at_full_speed) if isinstance(start, Ramp) else at_full_speed
 
     @property
     def steps(self) -> int:
@@ -320,6 +292,7 @@ class Scene:
 
     def particles(self) -> list[Seeds]:
         """Initial positions and volumes of each body's particles; refuses empty bodies and glued slits."""
+        check_memory(self)
         origin = np.array(self.domain.lower, dtype=float)
         seeds = []
         for k, body in enumerate(self.bodies):

@@ -3,12 +3,12 @@
 import math
 from dataclasses import dataclass
 
-from rsmpm_ti.errors import refuse
+from rsmpm_ti.kinds import check_kinds, check_positive
 
 
-def _check_time(owner: str, time: float) -> None:
-    if not (math.isfinite(time) and time > 0.0):
-        raise refuse(owner, time, "a positive time in seconds")
+def _check_time(start) -> None:
+    check_kinds("start", start)
+    check_positive("start.time", start.time, "time in seconds", least=1e-18)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -26,12 +26,23 @@ class Ramp:
     time: float
 
     def __post_init__(self):
-        _check_time("start.time", self.time)
+        _check_time(self)
 
     def factor(self, time: float) -> float:
         """Smooth step 3 s^2 - 2 s^3."""
         s = min(1.0, time / self.time)
         return s * s * (3.0 - 2.0 * s)
+
+    def duration(self, at_full_speed: float) -> float:
+        """When platens have come as far as in that time at full speed [s]: `time`/2 later, or within the ramp where
+        its integral, time (s^3 - s^4/2), is that much."""
+        if at_full_speed >= 0.5 * self.time:
+            return at_full_speed + 0.5 * self.time
+        low, high = 0.0, 1.0
+        for _ in range(60):
+            s = 0.5 * (low + high)
+            low, high = (s, high) if s**3 - 0.5 * s**4 < at_full_speed / self.time else (low, s)
+        return high * self.time
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -44,7 +55,7 @@ class Press:
     time: float
 
     def __post_init__(self):
-        _check_time("start.time", self.time)
+        _check_time(self)
 
     def factor(self, time: float) -> float:
         return math.sin(math.pi * time / self.time) ** 2 if time < self.time else 0.0

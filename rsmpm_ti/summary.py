@@ -77,7 +77,7 @@ def _stress_numbers(stress, strain, middle, before, history, confinement) -> dic
     out["peak_stress_Pa"] = float(np.abs(stress).max() * np.sign(stress[np.abs(stress).argmax()]))
     end = middle[before][-1] if before.any() else 0.0
     elastic = before & (middle > ELASTIC_SHARE[0] * end) & (middle < ELASTIC_SHARE[1] * end)
-    if elastic.sum() >= 3:
+    if elastic.sum() >= 3 and np.ptp(strain[elastic]) > 0.0:  # not of platens that stand still
         out["apparent_modulus_Pa"] = float(np.polyfit(strain[elastic], stress[elastic], 1)[0])
     difference = np.abs(history["stress_top_Pa"] - history["stress_bottom_Pa"])
     added = np.abs(stress - confinement)

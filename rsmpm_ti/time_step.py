@@ -10,6 +10,9 @@ PAPER_DT = 1.91e-5
 USL_CFL = 0.6
 """Smallest stability limit of usl over offsets and shape functions other than linear, in units of dx/c_p."""
 
+LEAST_CFL = 1e-6
+"""Smallest step over the time a wave needs for one cell: below it a run never ends and adds up round-off."""
+
 MOST = 2_000_000_000
 """Most particles, grid nodes and steps: 32-bit numbers count them, and no machine here would hold or finish more."""
 
@@ -30,11 +33,15 @@ def check_step(scene) -> None:
     limit = (USL_CFL if scene.order == "usl" else scene.shape.stable_cfl) * scene.domain.dx / scene.wave_speed
     transit = scene.domain.dx / scene.wave_speed
     true_transit = scene.domain.dx / scene.rock.wave_speed()  # without mass scaling: what the paper's digits are
-    if 0.0 < scene.dt <= limit:
+    if LEAST_CFL * transit <= scene.dt <= limit:
         name = "t_end" if schedule.strain_end is None else "strain_end"
-        if not scene.t_end / scene.dt <= MOST:
-            most = f"at most {MOST:.3g} steps of {scene.dt:.4g} s, not {scene.t_end / scene.dt:.3g}"
-            raise refuse(f"schedule.{name}", getattr(schedule, name), most)
+        count = scene.t_end / scene.dt
+        if not 1.0 - 1e-9 <= count <= MOST:
+            allowed = f"from 1 to {MOST:.3g} steps of {scene.dt:.4g} s, not {count:.3g}"
+            causes = "cfl, dx, density, E, nu and time_scale"
+            if name == "strain_end":
+                causes += ", and the end from the platens' speed, position and start.time"
+            raise refuse(f"schedule.{name}", getattr(schedule, name), allowed, f"a step follows from {causes}")
         return
     if schedule.dt is not None and math.isclose(schedule.dt, PAPER_DT, rel_tol=0.01):
         raise SceneError(
@@ -47,6 +54,6 @@ def check_step(scene) -> None:
     raise refuse(
         given,
         schedule.dt if schedule.dt is not None else schedule.cfl,
-        f"such that dt = {scene.dt:.4g} s is positive and at most {limit:.4g} s (dx/c_p = {transit:.4g} s)",
+        f"such that dt = {scene.dt:.4g} is in [{LEAST_CFL * transit:.4g}, {limit:.4g}] s (dx/c_p = {transit:.4g} s)",
         f"use cfl <= {limit / transit:.2f}",
     )

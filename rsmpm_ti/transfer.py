@@ -5,6 +5,7 @@ from dataclasses import dataclass
 import taichi as ti
 
 from rsmpm_ti.errors import refuse
+from rsmpm_ti.kinds import check_kinds
 
 
 @ti.data_oriented
@@ -20,6 +21,7 @@ class PicFlip:
     affine = False  # no velocity gradient is carried by the particle
 
     def __post_init__(self):
+        check_kinds("transfer", self)
         if not 0.0 <= self.flip <= 1.0:
             raise refuse("transfer.flip", self.flip, "in [0, 1]", "1 is FLIP (no damping), 0 is PIC")
 

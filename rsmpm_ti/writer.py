@@ -35,10 +35,10 @@ class Writer:
     def __init__(self, wanted: Commission):
         """Starts the child, which gets ready while the caller goes on. Raises SceneError where it cannot be started."""
         self.out, self.warning, self.cpu_s = wanted.out, "", 0.0
-        self._errors = tempfile.TemporaryFile()
         package = str(Path(__file__).resolve().parent.parent)
         paths = os.pathsep.join(filter(None, (package, os.environ.get("PYTHONPATH"))))
         try:
+            self._errors = tempfile.TemporaryFile()
             self._child = subprocess.Popen(
                 [sys.executable, "-m", "rsmpm_ti.writer_process"],
                 stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=self._errors,

@@ -25,6 +25,8 @@ class Desk:
     def __init__(self):
         self._files, self._pending = ThreadPoolExecutor(max_workers=1), []
 
+    gallery = None
+
     def open(self, wanted) -> None:
         from rsmpm_ti.gallery import Gallery
 
@@ -78,6 +80,8 @@ def main() -> int:
         except Exception as error:  # whatever it is, the solver must hear of it in one line
             desk.stop()
             problem = (getattr(error, "strerror", None) or f"{type(error).__name__}: {error}") + _file(error)
+    if problem and desk.gallery is not None:
+        desk.gallery.discard()
     warning = "" if problem else desk.gallery.warning
     print(REPORT + json.dumps({"problem": problem, "warning": warning, "cpu_s": time.process_time()}), flush=True)
     return 1 if problem else 0

@@ -12,11 +12,11 @@ ROOT = Path(__file__).resolve().parent.parent
 PACKAGE = ROOT / "rsmpm_ti"
 
 LAYERS = """
-    errors units snapshot tensors regions seeding heterogeneity shape transfer averaging softening directional laws
-    rocks confinement boundaries starts quasi_static time_step spec traversal grid state sorting stencil crack_stress
-    material wall_nodes node_update kernels
-    smoothing tracking margin measure leaving stepper observe drive nominal cracks summary output fracture checkpoint
-    record paint frames gallery writer library result run_folder stopping run writer_process scene verify study bench
+    errors units snapshot kinds tensors regions seeding heterogeneity shape transfer averaging softening directional
+    laws rocks confinement boundaries starts quasi_static time_step consistency spec traversal grid state sorting
+    stencil crack_stress material wall_nodes node_update kernels smoothing tracking margin measure leaving stepper
+    observe drive nominal cracks summary output fracture checkpoint record paint frames gallery writer library result
+    run_folder stopping kernel_cache run writer_process scene verify study bench
 """.split()
 """A module imports only from modules to the left of its own name."""
 

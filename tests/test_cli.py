@@ -1,18 +1,13 @@
 """The command line: what it lists and checks, and bad input refused in one line before anything compiles."""
 
-import contextlib
-import dataclasses
-import io
 import subprocess
 import sys
 
 import pytest
-from hypothesis import example, given, settings
-from hypothesis import strategies as st
 
 from rsmpm_ti.library import available, keywords_of, load_scene
 from rsmpm_ti.output import write_json
-from rsmpm_ti.record import KNOWN, to_plain
+from rsmpm_ti.record import to_plain
 from rsmpm_ti.scene import build, main, parser
 from rsmpm_ti.spec import Scene
 
@@ -200,6 +195,15 @@ FILES = {
     "none": ("def scene(): pass\n", "must return a Scene, not NoneType"),
     "fails": ("def scene(*, n=1.0): return [][0]\n", "failed: IndexError"),
     "needs": ("def scene(angle): return angle\n", "failed: TypeError"),
+    "exits": ("import sys\nsys.exit(0)\n", "line 2 cannot be loaded: SystemExit: 0"),
+    "exits_later": ("import sys\ndef scene(): sys.exit(0)\n", "failed: SystemExit: 0"),
+    "endless": ("def scene(): return scene()\n", "failed: RecursionError"),
+    "endless_at_once": ("def f(): return f()\nf()\n", "line 1 cannot be loaded: RecursionError"),
+    "null": ("\0", "cannot be loaded: "),
+    "wordy": ("raise ValueError('x' * 1_000_000)\n", "ValueError: xxx"),
+    "speechless": ("class E(Exception):\n    def __str__(self): return 1 / 0\nraise E\n", "cannot be loaded: E"),
+    "quick": ("QUICK = {1: 2}\ndef scene(): pass\n", "QUICK must be a dict of keywords"),
+    "positional": ("def scene(a, /): pass\n", "failed: TypeError"),
     "long": ("def scene(): raise ValueError('one\\ntwo')\n", "failed: ValueError"),
 }
 
@@ -209,7 +213,7 @@ def test_malformed_scene_file_is_refused_in_one_line(command, tmp_path, name):
     text, words = FILES[name]
     (tmp_path / f"{name}.py").write_text(text)
     message = refused(command, f"{name}.py")
-    assert f"{name}.py" in message and words in message, message
+    assert f"{name}.py" in message and words in message and len(message) < 1000, message
 
 
 @pytest.mark.parametrize("text", ["{", "[]", '{"scene": {"type": "Rocket"}}', '{"scene": {"type": "Linear"}}', "\x00"])
@@ -225,6 +229,7 @@ def test_bad_file_does_not_hide_the_other_scenes(command, tmp_path):
         "stops": "import sys\nsys.exit(5)\n",
         "syntax": "def scene(:\n",
         "callable": "scene = dict\n",
+        "odd": "class D:\n    def __repr__(self): return 1 / 0\ndef scene(*, d=D()): pass\n",
     }
     for name, text in bad.items():
         (tmp_path / "scenes" / f"{name}.py").write_text(text)
@@ -247,51 +252,3 @@ def test_refused_command_ends_with_status_2_and_without_a_traceback(tmp_path):
     done = subprocess.run(code, cwd=root, capture_output=True, text=True, timeout=120)
     assert done.returncode == 2 and done.stdout == ""
     assert done.stderr.count("\n") == 1 and "elasticity.nu" in done.stderr
-
-
-def dotted_names(value, prefix: str = "") -> list[str]:
-    """Every dotted name below a value of a scene."""
-    if dataclasses.is_dataclass(value):
-        children = {f.name: getattr(value, f.name) for f in dataclasses.fields(value)}
-    elif isinstance(value, tuple):
-        children = {str(k): v for k, v in enumerate(value)}
-    else:
-        return []
-    return [name for k, v in children.items() for name in (prefix + k, *dotted_names(v, f"{prefix}{k}."))]
-
-
-SMALL = {"dx": 2e-3, "flaw_width": 6e-3}
-NAMES = [
-    *keywords_of(available()["cube"]),
-    *dotted_names(load_scene("cube", **SMALL)),
-    "nosuch",
-    "rock.",
-    ".",
-    "bodies.-1",
-]
-NUMBERS = st.one_of(
-    st.floats(), st.integers(), st.floats(-10.0, 10.0), st.integers(-3, 9), st.sampled_from([5e-324, 1.8e308, 2**31])
-).map(str)
-WORDS = st.sampled_from(["none", "true", "false", "nan", "-inf", "", "usl", "sparse", *sorted(KNOWN)])
-TEXTS = st.one_of(NUMBERS, WORDS, st.lists(NUMBERS, max_size=4).map(",".join), st.text(max_size=6))
-CELLS = st.sampled_from(["2e-3", "0.01", "1", "1e300", "1e-9", "5e-324", "0", "-1", "nan", "inf", "", "Box", "1,2"])
-SETTINGS = st.sampled_from(NAMES).flatmap(
-    lambda name: st.tuples(st.just(name), CELLS if name.endswith("dx") else TEXTS)
-)
-
-
-@settings(max_examples=200, derandomize=True, deadline=None)
-@given(SETTINGS)
-@example(("domain.upper", "1e6,1e6"))
-@example(("schedule.strain_end", "5e-324"))
-@example(("loading.boundaries.0.position", "0.1"))
-@example(("rock.criterion.friction_angle", "5e-324"))
-def test_any_setting_ends_with_status_0_or_2_and_at_most_one_line(setting):
-    """Cell sizes come from a list: a fine one is a fair request that takes long."""
-    out, err = io.StringIO(), io.StringIO()
-    small = [part for name, value in SMALL.items() for part in ("--set", f"{name}={value}")]
-    with contextlib.redirect_stdout(out), contextlib.redirect_stderr(err):
-        status = main(["cube", "--check", *small, "--set", "=".join(setting)])
-    message = err.getvalue()
-    assert (status, message.count("\n")) in ((0, 0), (2, 1)), message
-    assert status == 0 or (message.startswith("rsmpm_ti: ") and message.endswith("\n") and not out.getvalue())

@@ -12,3 +12,12 @@ def test_platens_travel_what_the_start_promises(start, distance):
     times = (np.arange(100_000) + 0.5) * 1e-4
     assert sum(map(start.factor, times)) * 1e-4 == pytest.approx(distance, rel=1e-6)
     assert start.factor(1.0) == pytest.approx(0.5 if isinstance(start, Ramp) else 1.0)
+
+
+@pytest.mark.parametrize("wanted", [1e-9, 0.03, 0.4, 0.999, 1.0, 1.5, 7.0])
+def test_ramp_lasts_until_platens_have_come_as_far_as_asked(wanted):
+    """The way by adding up small times, within the ramp of 2 s and beyond it."""
+    ramp = Ramp(time=2.0)
+    end, n = ramp.duration(wanted), 100_000
+    way = sum(ramp.factor((k + 0.5) * end / n) for k in range(n)) * end / n
+    assert way == pytest.approx(wanted, rel=1e-6)

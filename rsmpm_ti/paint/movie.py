@@ -1,6 +1,8 @@
 """Movies of frames: H.264 through imageio-ffmpeg, or GIF through Pillow alone."""
 
+import contextlib
 import os
+import shutil
 from pathlib import Path
 
 import numpy as np
@@ -24,7 +26,9 @@ class Movie:
             import imageio_ffmpeg
             from imageio import v2 as imageio
 
-            imageio_ffmpeg.get_ffmpeg_exe()
+            encoder = imageio_ffmpeg.get_ffmpeg_exe()
+            if shutil.which(encoder) is None:  # what IMAGEIO_FFMPEG_EXE names is not looked at by imageio_ffmpeg
+                raise RuntimeError(f"{encoder} is no program")
         except (ImportError, RuntimeError) as error:
             raise RuntimeError(f"no movie is written, pip install imageio imageio-ffmpeg ({error})") from error
         self.path = Path(path)
@@ -52,6 +56,15 @@ class Movie:
         self._writer = None
         os.replace(self._part, self.path)
         return self.path
+
+    def discard(self) -> None:
+        """Gives the movie up, where it cannot be finished, and removes what there is of it; never raises."""
+        with contextlib.suppress(Exception):  # an encoder that has failed fails again when it is closed
+            if self._writer is not None:
+                self._writer.close()
+        self._writer = None
+        with contextlib.suppress(OSError):
+            self._part.unlink(missing_ok=True)
 
     def _start(self):
         self.path.parent.mkdir(parents=True, exist_ok=True)
