@@ -57,7 +57,9 @@ def translate(shape, transfer, cells: int, way: float) -> Carried:
         piece.drive.advance(total // LOOKS)
         if k * way / LOOKS >= 1.0:  # the first particles have crossed
             misses.append(np.abs(piece.by_id("sigma") - field)[:, [0, 1, 3]].max(axis=1) / PEAK)
-    return Carried(float(np.sqrt(np.mean(np.square(misses)))), float(np.max(misses)), int((piece.by_id("mode") > 0).sum()))
+    return Carried(
+        float(np.sqrt(np.mean(np.square(misses)))), float(np.max(misses)), int((piece.by_id("mode") > 0).sum())
+    )
 
 
 def cell_crossing(full: bool) -> Outcome:

@@ -31,7 +31,9 @@ C_P = ELASTIC.wave_speed()
 
 def breaking(criterion: MohrCoulomb = PAPER, **changes) -> Rock:
     """The same rock with a strength."""
-    return Rock(**{"density": DENSITY, "elasticity": HOOKE, "criterion": criterion, "viscosity": NoViscosity()} | changes)
+    return Rock(
+        **{"density": DENSITY, "elasticity": HOOKE, "criterion": criterion, "viscosity": NoViscosity()} | changes
+    )
 
 
 def scene_of(size: tuple[float, float], lower: tuple[float, ...], upper: tuple[float, ...], **changes) -> Scene:
@@ -77,11 +79,13 @@ class Piece:
             particles.C.fill(0.0)
         if particles.breaks:
             particles.mode.fill(0)
+            self.sim.events.count.fill(0)
+            self.sim.events.by_mode.fill(0)
         sort_particles(self.sim)
         ledger = self.sim.ledger
         for field in (ledger.impulse, ledger.work, ledger.body_work, ledger.viscous, ledger.released):
             field.fill(0.0)
-        self.clock.step, self.clock.dt = 0, cfl * DX / self.sim.wave_speed
+        self.clock.step, self.clock.strain, self.clock.dt = 0, 0.0, cfl * DX / self.sim.wave_speed
         self.drive.survey = survey(self.sim)
 
     def by_id(self, name: str) -> np.ndarray:

@@ -47,9 +47,7 @@ def _work(task: tuple) -> Finished:
     return Finished(name, rows, time.perf_counter() - start, problem)
 
 
-def run_cases(
-    catalogue: str, names: list[str], full: bool, out: Path, jobs: int, threads: int
-) -> Iterator[Finished]:
+def run_cases(catalogue: str, names: list[str], full: bool, out: Path, jobs: int, threads: int) -> Iterator[Finished]:
     """Each case in a process of its own, `jobs` at a time: Taichi's memory of one never meets the next."""
     with multiprocessing.get_context("spawn").Pool(jobs, maxtasksperchild=1) as pool:
         yield from pool.imap_unordered(_work, [(catalogue, name, full, out, threads) for name in names])
