@@ -195,8 +195,8 @@ def guard_energy(sim: Simulation, clock: Clock, survey: Survey, energy_start: fl
         velocity, place = sim.particles.v.to_numpy(), sim.particles.reference.to_numpy() + sim.particles.u.to_numpy()
         fastest = int(np.argmax(np.linalg.norm(velocity, axis=1)))
         raise UnstableRun(
-            f"{100.0 * created / present:.0f} % of the energy of {present:.3g} J came from nowhere at step {clock.step}, "
-            f"t = {clock.time:.6g} s; the fastest particle, {survey.speed:.3g} m/s, is at "
+            f"{100.0 * created / present:.0f} % of the energy of {present:.3g} J came from nowhere at step "
+            f"{clock.step}, t = {clock.time:.6g} s; the fastest particle, {survey.speed:.3g} m/s, is at "
             f"{np.array2string(1e3 * place[fastest], precision=3)} mm; likely cause: a time step too long for this "
             f"shape function and transfer, or particles that cross cells with linear functions; lower schedule.cfl, or "
             f"take QuadraticBSpline"

@@ -182,6 +182,8 @@ def report(result) -> str:
         )
         if s["platen_imbalance"] > 0.01:
             lines.append("warning: above 1 % the loading is not quasi-static; lower loading.time_scale or the speed")
+    if s["numerical_fracture"] is not None:
+        lines.append(f"warning: {s['numerical_fracture']}")
     if result.stopped:
         lines.append(f"stopped early: {result.stopped}; everything up to there is written")
     lines.append(f"written to {result.out}")

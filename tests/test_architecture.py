@@ -15,8 +15,8 @@ LAYERS = """
     errors units snapshot tensors regions seeding heterogeneity shape transfer averaging softening directional laws
     rocks confinement boundaries starts spec traversal grid state sorting stencil crack_stress material wall_nodes
     node_update kernels
-    smoothing tracking margin measure stepper observe drive nominal cracks summary output fracture record paint frames
-    library run scene verify stress study bench
+    smoothing tracking margin measure stepper observe drive nominal cracks parting summary output fracture record paint
+    frames library run scene verify stress study bench
 """.split()
 """A module imports only from modules to the left of its own name."""
 
@@ -29,7 +29,7 @@ VERIFY_LAYERS = """
     triaxial cell material_point crack_forms crack_paths cracked_cell envelope disc hole slit_field first_failure
     weibull catalogue report running command __main__
 """.split()
-STRESS_LAYERS = "catalogue __main__".split()
+STRESS_LAYERS = "pieces steps crossing elastic motion labels impact failing invariance catalogue __main__".split()
 STUDY_LAYERS = """
     runs flaw_cracks turned grid_independence fracture_energy shear_band gmts mean_stress flaw_angle catalogue __main__
 """.split()

@@ -64,11 +64,9 @@ def _rows(piece: Piece, name: str, speed: float) -> list[Row]:
     try:
         impact = hit(piece, speed)
     except UnstableRun:
-        why = "with usf the free end loses its light last nodes' energy balance as particles leave cells"
+        why = "usf and linear functions: the free end's last particles leave their cells while they are pulled"
         return [seen(f"{at}: found unstable", 1.0, why)]
-    why = (
-        "the mean is conservation of momentum, 1.5 % behind a front that rings; the law is linear in ln J, so v/c more"
-    )
+    why = "conservation of momentum; 1.5 % by a front that rings, and v/c since the law is linear in ln J"
     tolerance = 0.02 + speed / C_P
     return [
         relative(f"{at}: stress behind the shock/(rho c v)", -1.0, impact.plateau, tolerance, why),

@@ -1,6 +1,6 @@
 """What hard cases share: a small free block that is put into a state by hand, without building it again."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 import taichi as ti
@@ -31,9 +31,7 @@ C_P = ELASTIC.wave_speed()
 
 def breaking(criterion: MohrCoulomb = PAPER, **changes) -> Rock:
     """The same rock with a strength."""
-    return Rock(
-        **{"density": DENSITY, "elasticity": HOOKE, "criterion": criterion, "viscosity": NoViscosity()} | changes
-    )
+    return replace(ELASTIC, criterion=criterion, **changes)
 
 
 def scene_of(size: tuple[float, float], lower: tuple[float, ...], upper: tuple[float, ...], **changes) -> Scene:
