@@ -36,8 +36,7 @@ class Fracture:
     warning: str = ""  # numerical fracture, see `parting.py`
 
     def numbers(self) -> dict:
-        """The part of summary.json that counts cracks, fragments and acoustic events and warns of parting; None where not
-        defined."""
+        """The part of summary.json that counts what broke, and warns of parting; None where not defined."""
         plane = self.dim == 2
         return {
             "cracks": len(self.cracks),
