@@ -79,6 +79,7 @@ def test_case_that_breaks_or_misses_gives_status_1_and_the_others_still_run(tmp_
 
     done = [Finished("wave", (at_most("a", 1.0, 0.1, "because"),), 1.0), Finished("hole", (), 1.0, "ValueError: x")]
     monkeypatch.setattr(command, "run_cases", lambda *_: iter(done))
+    monkeypatch.setattr(command, "cases_of", lambda _: {"wave": None, "hole": None})
     assert main(["wave", "hole", "--out", str(tmp_path)]) == 1
     printed = capsys.readouterr().out
     assert "MISS" in printed and "because" in printed and "broke: ValueError: x" in printed and "2 misses" in printed

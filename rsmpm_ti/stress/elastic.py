@@ -7,7 +7,7 @@ import numpy as np
 
 from rsmpm_ti.laws import Hooke
 from rsmpm_ti.shape import Linear, QuadraticBSpline
-from rsmpm_ti.stress.pieces import DX, ELASTIC, E, Piece, scene_of
+from rsmpm_ti.stress.pieces import DENSITY, DX, ELASTIC, E, Piece, scene_of
 from rsmpm_ti.verify.case import Case, Outcome, Row, at_most, relative, seen
 
 BEAM = (32, 4)
@@ -42,6 +42,12 @@ ROOT = 4.730041
 """k L of the first bending mode of a free beam: cos(kL) cosh(kL) = 1."""
 
 
+def thin_beam(nu: float) -> float:
+    """Frequency of the first bending mode by Euler and Bernoulli, in plane strain [1/s]."""
+    speed = math.sqrt(E / (1.0 - nu**2) / DENSITY)
+    return ROOT**2 / (2.0 * math.pi) * speed * BEAM[1] / (math.sqrt(12.0) * BEAM[0] ** 2 * DX)
+
+
 def _bending(piece: Piece) -> tuple[float, float]:
     """(Frequency of the first bending mode [1/s], share of energy created over a period)."""
     x = (piece.x[:, 0] - 4.0) / BEAM[0]
@@ -66,19 +72,15 @@ def nearly_incompressible(full: bool) -> Outcome:
     """5: nu up to 0.499, where volume resists a thousand times as much as shape."""
     rows: list[Row] = []
     for shape in (Linear(), QuadraticBSpline())[: 2 if full else 1]:
-        base = None
-        for nu in (0.3, 0.45, 0.49, 0.499) if full else (0.3, 0.499):
+        for nu in (0.3, 0.45, 0.49, 0.499) if full else (0.499,):
             piece, name = beam(nu, shape), f"{type(shape).__name__}, nu {nu:g}"
             why = "round-off of the strain, magnified by lambda/mu"
             rows.append(at_most(f"{name}: uniform strain, error of the stress", _patch(piece, nu), 1e-9, why))
             frequency, created = _bending(piece)
             why = "bending is slow against the step: its energy does not beat"
             rows.append(at_most(f"{name}: share of energy created in bending", created, 0.02, why))
-            scaled = frequency * math.sqrt(1.0 - nu**2)
-            base = base or scaled
-            if nu > 0.3:
-                why = "sqrt(E/(1 - nu^2)) taken out, 1 is right: more is locking, four cells high, four particles each"
-                rows.append(seen(f"{name}: bending frequency over that of nu 0.3", scaled / base, why))
+            why = "a real beam of this height is a few per cent below thin-beam theory; what is above it is locking"
+            rows.append(seen(f"{name}: bending frequency over thin-beam theory", frequency / thin_beam(nu), why))
             why = "c_p = 4980, 10578 and 33055 m/s"
             if nu in WAVE_SPEEDS:
                 rows.append(relative(f"{name}: c_p [m/s]", WAVE_SPEEDS[nu], piece.sim.wave_speed, 1e-3, why))

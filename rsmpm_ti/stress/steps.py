@@ -165,7 +165,7 @@ def _edge(piece: Piece, name: str, fraction: float) -> list[Row]:
 def small_mass(full: bool) -> Outcome:
     """3: particles that have just entered a cell: a node of small mass and a force that is not small."""
     rows = []
-    for order in ("musl", "usf"):
+    for order in ("musl", "usf")[: 2 if full else 1]:
         piece = Piece.of(block(order=order))
         for fraction in FRACTIONS if full else FRACTIONS[::3]:
             rows += _edge(piece, order, fraction)
