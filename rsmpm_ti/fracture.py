@@ -13,6 +13,7 @@ from rsmpm_ti.cracks.tips import flaw_tips, initiations
 from rsmpm_ti.nominal import load_at
 from rsmpm_ti.observe import EventTable
 from rsmpm_ti.output import write_table
+from rsmpm_ti.parting import parting_warning
 from rsmpm_ti.regions import slits_of
 from rsmpm_ti.snapshot import MODE_NAMES, Snapshot
 from rsmpm_ti.spec import Scene
@@ -32,9 +33,10 @@ class Fracture:
     b: BValue | None
     rayleigh_speed: float  # of the rock as run, mass scaling included [m/s]
     dim: int
+    warning: str = ""  # numerical fracture, see `parting.py`
 
     def numbers(self) -> dict:
-        """The part of summary.json that counts cracks, fragments and acoustic events; None where not defined."""
+        """The part of summary.json that counts what broke, and warns of parting; None where not defined."""
         plane = self.dim == 2
         return {
             "cracks": len(self.cracks),
@@ -45,6 +47,7 @@ class Fracture:
             "b_value": self.b.b if self.b else None,
             "b_value_error": self.b.error if self.b else None,
             "initiation": self.initiation,
+            "numerical_fracture": self.warning or None,
         }
 
     @property
@@ -75,6 +78,7 @@ def measure_fracture(scene: Scene, history: np.ndarray, events: EventTable, snap
         b=b_value(acoustic.magnitude),
         rayleigh_speed=rayleigh_speed(shear_speed, scene.wave_speed),
         dim=scene.dim,
+        warning=parting_warning(scene, snapshot),
     )
 
 

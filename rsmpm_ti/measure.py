@@ -38,10 +38,16 @@ class Survey:
 
 @ti.func
 def gaping(sim: ti.template(), p):
-    """Whether a particle is a crack between pieces that may part as far as they like: its J then warns of nothing."""
+    """Whether a particle lies between pieces that may part as far as they like: its J then warns of nothing.
+
+    That is a crack, or failed rock that carries nothing at its J; one that J still makes pull is no gap.
+    """
     apart = False
     if ti.static(sim.particles.cracks):
         apart = sim.particles.mode[p] != 0
+    elif ti.static(sim.particles.breaks):
+        carried = sim.rock.after_failure.pressure(ti.static(sim.rock.elasticity.bulk), sim.particles.J[p])
+        apart = sim.particles.mode[p] != 0 and carried == 0.0
     return apart
 
 

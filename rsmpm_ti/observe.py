@@ -14,6 +14,17 @@ from rsmpm_ti.stepper import Clock
 J_BOUNDS = (0.05, 20.0)
 """A particle squeezed or stretched beyond these is no longer rock; the run has become unstable."""
 
+CREATED_SHARE = 0.5
+"""Share of a run's energy that may have come from nowhere: beyond it the run has become unstable.
+
+Runs of rock create up to 0.5 % (docs/stability.md). Velocity and stress are half a step apart, so that the energy of a
+wave beats by sin(w dt/2): 0.3 for one of ten cells at CFL 1. In an unstable run the share tends to 1, since its energy
+grows exponentially, whatever was put into it.
+"""
+
+QUIET_STRAIN = 1e-6
+"""Below the energy of so much strain throughout, a hundredth of what breaks rock, round-off may make energy."""
+
 
 @dataclass(frozen=True)
 class EventTable:
@@ -126,6 +137,7 @@ class History:
         self._sim, self._clock = sim, clock
         self.rows: list[tuple[float, ...]] = []
         self._energy_start = start.kinetic + start.elastic
+        self._quiet = _quiet_energy(sim)
         self._impulse = start.impulse
         self._time = clock.time
         loading = sim.scene.loading
@@ -149,6 +161,7 @@ class History:
         return self._energy_start
 
     def record(self, survey: Survey) -> None:
+        """Add a row. Raises UnstableRun, the row included, if the run has made energy out of nothing."""
         clock, loading = self._clock, self._sim.scene.loading
         bottom = top = np.nan
         if self._platens is not None and clock.time > self._time:
@@ -164,6 +177,7 @@ class History:
             )
         )  # fmt: skip
         self._impulse, self._time = survey.impulse, clock.time
+        guard_energy(self._sim, clock, survey, self._energy_start, self._quiet)
 
     def table(self) -> np.ndarray:
         """Structured array with the fields HISTORY_COLUMNS."""
@@ -191,4 +205,29 @@ def guard(sim: Simulation, clock: Clock, survey: Survey) -> None:
         raise UnstableRun(
             f"a particle has J = {survey.J_min:.3g} .. {survey.J_max:.3g} {at}, outside {J_BOUNDS}; likely cause: "
             f"an unstable step or a collapse beyond the law; lower schedule.cfl or end the run earlier"
+        )
+
+
+def _quiet_energy(sim: Simulation) -> float:
+    """What round-off may make [J]."""
+    volume = sim.particles.volume.to_numpy().sum(dtype=np.float64)
+    return float(0.5 * sim.density * sim.wave_speed**2 * QUIET_STRAIN**2 * volume)
+
+
+def guard_energy(sim: Simulation, clock: Clock, survey: Survey, energy_start: float, quiet: float) -> None:
+    """Stop a run that makes energy: kinetic + elastic + dissipated exceed what it started with and the work since.
+
+    It is for a history, not for `guard`, which also sees states that were changed by hand on the way. quiet: [J].
+    """
+    present = survey.kinetic + survey.elastic + survey.dissipated
+    created = present - survey.work - energy_start
+    if not created <= CREATED_SHARE * present + quiet:
+        velocity, place = sim.particles.v.to_numpy(), sim.particles.reference.to_numpy() + sim.particles.u.to_numpy()
+        fastest = int(np.argmax(np.linalg.norm(velocity, axis=1)))
+        raise UnstableRun(
+            f"{100.0 * created / present:.0f} % of the energy of {present:.3g} J came from nowhere at step "
+            f"{clock.step}, t = {clock.time:.6g} s; the fastest particle, {survey.speed:.3g} m/s, is at "
+            f"{np.array2string(1e3 * place[fastest], precision=3)} mm; likely cause: a time step too long for this "
+            f"shape function and transfer, or particles that cross cells with linear functions; lower schedule.cfl, or "
+            f"take QuadraticBSpline"
         )

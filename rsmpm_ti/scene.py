@@ -199,6 +199,8 @@ def report(result) -> str:
             lines.append("warning: above 1 % the loading is not quasi-static; lower loading.time_scale or the speed")
     if s["dropped"]:
         lines.append(f"{s['dropped']} particles left the domain with {s['dropped_energy_J']:.3g} J and were dropped")
+    if s["numerical_fracture"] is not None:
+        lines.append(f"warning: {s['numerical_fracture']}")
     if result.stopped:
         lines.append(f"stopped early: {result.stopped}; everything up to there is written; go on with --resume")
     if s["warning"]:

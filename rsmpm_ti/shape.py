@@ -22,6 +22,7 @@ class Linear:
     width = 2  # nodes per axis
     shift = 0.0  # base node = floor(x/dx - shift)
     stable_cfl = 1.37  # smallest limit of musl/usf with free edges at any offset, in units of dx/c_p
+    affine_cfl = 0.0  # the same with an affine transfer: none holds once a particle has just crossed
     crack_band = 1.0  # width of the band that a crack opens over [cells]
     variance = 1.0 / 6.0  # second moment of the function [cells^2]
 
@@ -50,7 +51,8 @@ class Gimp:
 
     width = 3
     shift = 0.5
-    stable_cfl = 1.7
+    stable_cfl = 1.65
+    affine_cfl = 0.85
     crack_band = 1.5
 
     def __post_init__(self):
@@ -98,6 +100,7 @@ class QuadraticBSpline:
     width = 3
     shift = 0.5
     stable_cfl = 1.7
+    affine_cfl = 1.2
     crack_band = 2.0
     variance = 0.25
 

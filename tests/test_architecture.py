@@ -15,8 +15,8 @@ LAYERS = """
     errors units snapshot kinds tensors regions seeding heterogeneity shape transfer averaging softening directional
     laws rocks confinement boundaries starts quasi_static time_step consistency spec traversal grid state sorting
     stencil crack_stress material wall_nodes node_update kernels smoothing tracking margin measure leaving stepper
-    observe drive nominal cracks summary output fracture checkpoint record paint frames gallery writer library result
-    run_folder stopping kernel_cache run writer_process scene verify study bench
+    observe drive nominal cracks parting summary output fracture checkpoint record paint frames gallery writer library
+    result run_folder stopping kernel_cache run writer_process scene verify stress study bench
 """.split()
 """A module imports only from modules to the left of its own name."""
 
@@ -27,18 +27,20 @@ PAINT_LAYERS = "view layout chrome raster ggui kinds figure summary movie".split
 VERIFY_LAYERS = """
     case drives fe_field meshing finite_elements closed_forms exact_motion bodies relaxation waves manufactured specimen
     triaxial cell material_point crack_forms crack_paths cracked_cell envelope disc hole slit_field first_failure
-    weibull catalogue report running __main__
+    weibull catalogue report running command __main__
 """.split()
+STRESS_LAYERS = "pieces steps crossing elastic motion labels impact failing invariance catalogue __main__".split()
 STUDY_LAYERS = """
     runs flaw_cracks turned grid_independence fracture_energy shear_band gmts mean_stress flaw_angle catalogue __main__
 """.split()
 BENCH_LAYERS = "settings yardstick workers speed passes scaling start measures front error __main__".split()
-"""The same within the packages cracks, verify, study and bench, which see every layer above their own name."""
+"""The same within the packages cracks, verify, stress, study and bench, which see every layer above their own name."""
 
 ROOMS = {
     "cracks": CRACK_LAYERS,
     "paint": PAINT_LAYERS,
     "verify": VERIFY_LAYERS,
+    "stress": STRESS_LAYERS,
     "study": STUDY_LAYERS,
     "bench": BENCH_LAYERS,
 }
@@ -110,6 +112,7 @@ def allowed_imports(module: str) -> set[str]:
     crackers = [f"cracks.{name}" for name in CRACK_LAYERS]
     painters = [f"paint.{name}" for name in PAINT_LAYERS]
     verifiers = [f"verify.{name}" for name in VERIFY_LAYERS]
+    stresses = [f"stress.{name}" for name in STRESS_LAYERS]
     benches = [f"bench.{name}" for name in BENCH_LAYERS]
     studies = [f"study.{name}" for name in STUDY_LAYERS]
     if module == "":  # rsmpm_ti/__init__.py hands out the surface
@@ -125,7 +128,7 @@ def allowed_imports(module: str) -> set[str]:
         above |= set(painters)
     if "verify" in above:
         above |= set(verifiers)
-    for rooms in (crackers, verifiers, studies, benches):
+    for rooms in (crackers, verifiers, stresses, studies, benches):
         if module in rooms:
             above |= set(rooms[: rooms.index(module)]) | {""}
     return above

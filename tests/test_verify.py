@@ -6,7 +6,7 @@ import math
 import pytest
 
 from rsmpm_ti.verify.__main__ import main
-from rsmpm_ti.verify.case import Row, at_least, at_most, difference, relative
+from rsmpm_ti.verify.case import Row, at_least, at_most, difference, relative, seen
 from rsmpm_ti.verify.catalogue import CASES, MODULES
 from rsmpm_ti.verify.running import run_case
 
@@ -22,7 +22,7 @@ QUICK = [
 
 @pytest.mark.parametrize("name", QUICK)
 def test_case_agrees_with_its_reference(name, tmp_path):
-    rows = run_case(name, full=False, out=tmp_path, threads=1)
+    rows = run_case("rsmpm_ti.verify.catalogue", name, full=False, out=tmp_path, threads=1)
     assert rows and [row for row in rows if not row.passed] == []
     assert (tmp_path / f"{name}.png").stat().st_size > 10_000
     assert all(len(row.reason) > 3 for row in rows), "every tolerance has its reason beside it"
@@ -46,6 +46,7 @@ def test_names_are_unique_and_fit_the_table():
         (at_least("a", 1.6, 1.7, "why"), False),
         (at_most("a", math.nan, 0.2, "why"), False),
         (at_least("a", math.nan, 0.2, "why"), False),
+        (seen("a", 1e9, "why"), True),
     ],
 )
 def test_verdict(row: Row, passed: bool):
@@ -73,12 +74,12 @@ def test_command_writes_table_and_picture_and_tells_of_a_miss(tmp_path, capsys):
 
 
 def test_case_that_breaks_or_misses_gives_status_1_and_the_others_still_run(tmp_path, capsys, monkeypatch):
-    import rsmpm_ti.verify.__main__ as command
+    import rsmpm_ti.verify.command as command
     from rsmpm_ti.verify.running import Finished
 
     done = [Finished("wave", (at_most("a", 1.0, 0.1, "because"),), 1.0), Finished("hole", (), 1.0, "ValueError: x")]
     monkeypatch.setattr(command, "run_cases", lambda *_: iter(done))
-    monkeypatch.setattr(command, "CASES", {"wave": None, "hole": None})
+    monkeypatch.setattr(command, "cases_of", lambda _: {"wave": None, "hole": None})
     assert main(["wave", "hole", "--out", str(tmp_path)]) == 1
     printed = capsys.readouterr().out
     assert "MISS" in printed and "because" in printed and "broke: ValueError: x" in printed and "2 misses" in printed

@@ -41,12 +41,17 @@ def at_least(quantity: str, got: float, least: float, reason: str) -> Row:
     return Row(quantity, least, got, 0.0 if got >= least else got - least, 0.0, reason)  # NaN stays NaN
 
 
+def seen(quantity: str, got: float, why: str) -> Row:
+    """A number that is reported and not judged: a limit found, of which no theory says what it ought to be."""
+    return Row(quantity, math.nan, got, 0.0, math.inf, why)
+
+
 @dataclass(frozen=True)
 class Outcome:
-    """Rows of one case, and how to draw it: `draw` fills a matplotlib Figure."""
+    """Rows of one case, and how to draw it if there is something to see: `draw` fills a matplotlib Figure."""
 
     rows: tuple[Row, ...]
-    draw: Callable
+    draw: Callable | None = None
 
 
 @dataclass(frozen=True)

@@ -1,6 +1,7 @@
 """The table of a verification: on the terminal, as CSV, and one picture per case."""
 
 import csv
+import math
 from pathlib import Path
 
 from rsmpm_ti.verify.case import Outcome, Row
@@ -9,7 +10,9 @@ COLUMNS = ("case", "quantity", "reference", "got", "error", "tolerance", "verdic
 
 
 def cells(name: str, row: Row) -> list[str]:
-    numbers = (f"{v:.6g}" for v in (row.reference, row.got))
+    numbers = [f"{v:.6g}" for v in (row.reference, row.got)]
+    if row.tolerance == math.inf:
+        return [name, row.quantity, "", numbers[1], "", "", "seen", row.reason]
     verdict = "pass" if row.passed else "MISS"
     return [name, row.quantity, *numbers, f"{row.error:+.3g}", f"{row.tolerance:.3g}", verdict, row.reason]
 
