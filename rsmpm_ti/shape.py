@@ -22,7 +22,7 @@ class Linear:
     width = 2  # nodes per axis
     shift = 0.0  # base node = floor(x/dx - shift)
     stable_cfl = 1.37  # smallest limit of musl/usf with free edges at any offset, in units of dx/c_p
-    affine_cfl = 0.0  # the same with an affine transfer: none holds once a particle has just crossed
+    affine_cfl = 0.8  # the same with an affine transfer while no particle crosses; then none holds
     crack_band = 1.0  # width of the band that a crack opens over [cells]
     variance = 1.0 / 6.0  # second moment of the function [cells^2]
 

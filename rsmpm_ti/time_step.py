@@ -7,8 +7,9 @@ from rsmpm_ti.errors import SceneError, refuse
 PAPER_DT = 1.91e-5
 """The time step the paper prints [s]; a hundred times what its grid allows (paper sec. 4.1)."""
 
-USL_CFL = 0.6
-"""Smallest stability limit of usl over offsets and shape functions other than linear, in units of dx/c_p."""
+USL_CFL = 0.55
+"""Smallest stability limit of usl over offsets and shape functions other than linear, in units of dx/c_p: 0.56 is found
+for Gimp (docs/stability.md)."""
 
 LEAST_CFL = 1e-6
 """Smallest step over the time a wave needs for one cell: below it a run never ends and adds up round-off."""
@@ -27,10 +28,16 @@ def adapted(dt: float, wave_speed: float, J: float, speed: float) -> float:
     return dt / max(1.0, math.sqrt(J) + speed / wave_speed)
 
 
+def stable_cfl(scene) -> float:
+    """Largest stable step of shape function, transfer and order, in units of dx/c_p."""
+    limit = scene.shape.affine_cfl if scene.transfer.affine else scene.shape.stable_cfl
+    return min(limit, USL_CFL) if scene.order == "usl" else limit
+
+
 def check_step(scene) -> None:
     """Raises SceneError unless the steps of a `spec.Scene` are stable and can be counted."""
     schedule = scene.schedule
-    limit = (USL_CFL if scene.order == "usl" else scene.shape.stable_cfl) * scene.domain.dx / scene.wave_speed
+    limit = stable_cfl(scene) * scene.domain.dx / scene.wave_speed
     transit = scene.domain.dx / scene.wave_speed
     true_transit = scene.domain.dx / scene.rock.wave_speed()  # without mass scaling: what the paper's digits are
     if LEAST_CFL * transit <= scene.dt <= limit:

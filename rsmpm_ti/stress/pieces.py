@@ -81,7 +81,7 @@ class Piece:
             self.sim.events.by_mode.fill(0)
         sort_particles(self.sim)
         ledger = self.sim.ledger
-        for field in (ledger.impulse, ledger.work, ledger.body_work, ledger.viscous, ledger.released):
+        for field in (ledger.impulse, ledger.work, ledger.latest, ledger.body_work, ledger.viscous, ledger.released):
             field.fill(0.0)
         self.clock.step, self.clock.strain, self.clock.dt = 0, 0.0, cfl * DX / self.sim.wave_speed
         self.drive.survey = survey(self.sim)

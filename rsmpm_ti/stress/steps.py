@@ -5,8 +5,9 @@ import numpy as np
 from rsmpm_ti.errors import SceneError, UnstableRun
 from rsmpm_ti.observe import History
 from rsmpm_ti.shape import Gimp, Linear, QuadraticBSpline
-from rsmpm_ti.spec import USL_CFL, Scene
+from rsmpm_ti.spec import Scene
 from rsmpm_ti.stress.pieces import C_P, Piece, scene_of
+from rsmpm_ti.time_step import stable_cfl
 from rsmpm_ti.transfer import Apic, PicFlip
 from rsmpm_ti.verify.case import Case, Outcome, Row, at_least, at_most, difference, seen
 
@@ -92,13 +93,6 @@ def largest_cfl(piece: Piece) -> float:
     return limit
 
 
-def declared(scene: Scene) -> float:
-    """The limit that the solver states for a scene, in dx/c_p."""
-    if scene.order == "usl":
-        return USL_CFL
-    return scene.shape.affine_cfl if scene.transfer.affine else scene.shape.stable_cfl
-
-
 SHAPES = (Linear(), Gimp(), QuadraticBSpline())
 
 
@@ -112,7 +106,7 @@ def _limits() -> list[Row]:
                     continue
                 scene = block(shape=shape, order=order, transfer=transfer)
                 name = f"limit, {type(shape).__name__}, {type(transfer).__name__}, {order}"
-                rows.append(at_least(name, largest_cfl(Piece.of(scene)), declared(scene), "what the solver states"))
+                rows.append(at_least(name, largest_cfl(Piece.of(scene)), stable_cfl(scene), "what the solver states"))
     return rows
 
 
@@ -130,7 +124,7 @@ def past_limit(full: bool) -> Outcome:
         why = "step, place, cause and remedy"
         told = all(word in message for word in ("at step", "mm", "likely cause", "lower schedule.cfl"))
         rows.append(difference(f"CFL {cfl:g}: message tells what to do", 1.0, float(told), 0.0, why))
-    at_limit = [holds(piece, declared(piece.sim.scene), offset) for offset in OFFSETS]
+    at_limit = [holds(piece, stable_cfl(piece.sim.scene), offset) for offset in OFFSETS]
     why = "the limit that the solver states, at every place of the block in its cells"
     rows.append(at_least("Linear, musl: share of offsets stable at its limit", np.mean(at_limit), 1.0, why))
     return Outcome((*rows, *(_limits() if full else ())))
