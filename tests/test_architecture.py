@@ -29,7 +29,9 @@ VERIFY_LAYERS = """
     triaxial cell material_point crack_forms crack_paths cracked_cell envelope disc hole slit_field first_failure
     weibull catalogue report running command __main__
 """.split()
-STRESS_LAYERS = "pieces steps crossing elastic motion labels impact failing invariance catalogue __main__".split()
+STRESS_LAYERS = (
+    "pieces steps crossing elastic motion labels impact failing invariance restart catalogue __main__".split()
+)
 STUDY_LAYERS = """
     runs flaw_cracks turned grid_independence fracture_energy shear_band gmts mean_stress flaw_angle catalogue __main__
 """.split()
