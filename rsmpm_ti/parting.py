@@ -18,7 +18,8 @@ def parted(scene: Scene, snapshot: Snapshot) -> np.ndarray:
     """Places [m], [k, dim], in the middle of unbroken neighbours that nothing holds together any more, widest first."""
     spacing = max(scene.domain.dx / body.seeding.particles_per_axis for body in scene.bodies)
     bridge, near = scene.shape.crack_band * scene.domain.dx, NEIGHBOURS * spacing
-    whole = np.flatnonzero((snapshot.failure_mode == INTACT) & (snapshot.damage == 0.0))
+    finite = np.isfinite(snapshot.x).all(axis=1)  # not so at the end of a run that became unstable
+    whole = np.flatnonzero((snapshot.failure_mode == INTACT) & (snapshot.damage == 0.0) & finite)
     x, u = snapshot.x[whole], snapshot.displacement[whole]
     nowhere = np.zeros((0, scene.dim))
     if len(whole) < 2 or np.linalg.norm(np.ptp(u, axis=0)) < bridge - near:  # as in every run of rock that is sound

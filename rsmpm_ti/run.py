@@ -1,6 +1,7 @@
 """Run a scene from Python: start Taichi, step, observe, write. The only module that starts Taichi."""
 
 import contextlib
+import gc
 import io
 import math
 import os
@@ -101,6 +102,7 @@ def start_taichi(precision: str, arch: str, threads: int | None):
     import taichi as ti
 
     ensure_kernel_cache()
+    gc.collect()  # fields of runs before hang in cycles, and many runs in one process would pile them up
     real = ti.f64 if precision == "f64" else ti.f32
     # never ti.gpu: it crashes without Vulkan, or runs silently on a software Vulkan with wrong numbers
     wanted = [ti.cuda, ti.cpu] if arch == "cuda" else ti.cpu

@@ -4,6 +4,7 @@ import pytest
 import taichi as ti
 
 
+@pytest.hookimpl(tryfirst=True)  # before xdist looks for groups
 def pytest_collection_modifyitems(items):
     """For `--dist loadgroup`: a file's tests share kernels, so they stay on one worker, unless they name a group."""
     for item in items:

@@ -35,7 +35,7 @@ STRESS_LAYERS = (
 STUDY_LAYERS = """
     runs flaw_cracks turned grid_independence fracture_energy shear_band gmts mean_stress flaw_angle catalogue __main__
 """.split()
-BENCH_LAYERS = "settings yardstick workers speed passes scaling start measures front error __main__".split()
+BENCH_LAYERS = "settings yardstick workers speed passes scaling start runs measures front error __main__".split()
 """The same within the packages cracks, verify, stress, study and bench, which see every layer above their own name."""
 
 ROOMS = {

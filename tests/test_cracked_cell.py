@@ -170,7 +170,7 @@ def scene(dx: float = 1e-3, shape=None, dim: int = 2, **parts) -> Scene:
         bodies=(Body(region=block),),
         rock=replace(rock(Directional()), **parts),
         loading=Loading(),
-        schedule=Schedule(t_end=1e-6),
+        schedule=Schedule(t_end=1e-5),
         shape=shape or QuadraticBSpline(),
     )
 

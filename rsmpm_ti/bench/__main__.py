@@ -1,4 +1,4 @@
-"""python -m rsmpm_ti.bench speed | passes | scaling | memory | start | error."""
+"""python -m rsmpm_ti.bench speed | passes | scaling | memory | start | runs | error."""
 
 import argparse
 import os
@@ -30,6 +30,10 @@ def parser() -> argparse.ArgumentParser:
     start.add_argument("--full", action="store_true", help="not with the scene's --quick settings")
     start.add_argument("--threads", type=int, default=os.cpu_count() or 1)
     start.add_argument("--rounds", type=int, default=3)
+    runs = what.add_parser("runs", help="whole runs, with and without pictures, and deterministic")
+    runs.add_argument("scene", nargs="?", default="cube")
+    runs.add_argument("--quick", action="store_true", help="with the scene's --quick settings")
+    runs.add_argument("--rounds", type=int, default=3)
     error = what.add_parser("error", help="sweep numerical settings: error against wall time")
     error.add_argument("cases", nargs="*", choices=(*CELLS, []), metavar="CASE", help=f"of {', '.join(CELLS)}; all")
     error.add_argument("--quick", action="store_true", help="leave the finest grids out")
@@ -65,6 +69,10 @@ def _measure(options: argparse.Namespace) -> str:
         from rsmpm_ti.bench.start import start
 
         return start(options.scene, not options.full, options.threads, options.rounds)
+    if options.what == "runs":
+        from rsmpm_ti.bench.runs import runs
+
+        return runs(options.scene, options.quick, options.rounds)
     from rsmpm_ti.bench.error import error
 
     return error(options.cases, not options.quick, options.jobs, Path(options.out))
