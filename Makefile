@@ -29,7 +29,7 @@ cube disc intact: $(STAMP)
 	$(RUN) -m rsmpm_ti.scene $@ $(ARGS)
 
 test: $(STAMP)
-	$(RUN) -m pytest -n 2 --dist loadgroup $(ARGS)
+	$(RUN) -m pytest -n 2 --dist worksteal $(ARGS)
 
 validation: $(STAMP)
 	$(RUN) -m pytest -m validation $(ARGS)

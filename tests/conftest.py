@@ -4,14 +4,6 @@ import pytest
 import taichi as ti
 
 
-@pytest.hookimpl(tryfirst=True)  # before xdist looks for groups
-def pytest_collection_modifyitems(items):
-    """For `--dist loadgroup`: a file's tests share kernels, so they stay on one worker, unless they name a group."""
-    for item in items:
-        if item.get_closest_marker("xdist_group") is None:
-            item.add_marker(pytest.mark.xdist_group(item.path.name))
-
-
 def start(real, threads: int = 2) -> None:
     ti.init(
         arch=ti.cpu, default_fp=real, cpu_max_num_threads=threads, offline_cache=True, log_level=ti.ERROR,

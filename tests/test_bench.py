@@ -50,6 +50,7 @@ def test_sweep_covers_every_scheme_once_and_leaves_out_what_is_refused(case):
     assert {s.cells for s in sweep(case, finest=False)} == set(CELLS[case][:2])
 
 
+@pytest.mark.validation
 def test_error_sweep_of_one_small_case_writes_csv_and_picture(tmp_path, monkeypatch, capsys):
     """Two settings of the bar in processes of their own; errors are those of the dispersion formula over two periods:
     2 pi x 2 x (k h)^2/8 = 6.1 % for linear functions at 32 cells per wavelength (confirmed by the verification)."""
@@ -96,6 +97,7 @@ def test_twins_carry_a_flying_block(tmp_path):
         assert float(said[1]) == pytest.approx(v[:, 0].mean(), rel=1e-6)
 
 
+@pytest.mark.validation
 def test_workers_give_rates_of_every_code(tmp_path):
     with workers() as (pool, twins):
         plan = [Runner("naive", "bspline"), Runner("solver", "linear", dx=2.5e-3, threads=2)]

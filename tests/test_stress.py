@@ -17,7 +17,7 @@ from rsmpm_ti.stress.catalogue import CASES, MODULES
 from rsmpm_ti.stress.pieces import C_P, DX, scene_of
 from rsmpm_ti.verify.running import run_case
 
-QUICK = [pytest.param(name, marks=pytest.mark.xdist_group(name)) for name, case in CASES.items() if case.quick]
+QUICK = [name for name, case in CASES.items() if case.quick]
 
 
 @pytest.mark.parametrize("name", QUICK)

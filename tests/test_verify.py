@@ -14,9 +14,7 @@ LONGER = {"manufactured_b"}
 """Cases of the quick tier that the suite leaves to its own longer tier: a minute, and `manufactured_a` is like it."""
 
 QUICK = [
-    pytest.param(name, marks=[pytest.mark.xdist_group(name), *[pytest.mark.validation] * (name in LONGER)])
-    for name, case in CASES.items()
-    if case.quick
+    pytest.param(name, marks=[pytest.mark.validation] * (name in LONGER)) for name, case in CASES.items() if case.quick
 ]
 
 

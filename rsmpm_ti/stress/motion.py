@@ -255,6 +255,6 @@ def numerical_fracture(full: bool) -> Outcome:
 CASES = (
     Case("rotation", "6: stress that turns with its rock, and a disc that spins", rotation),
     Case("fragments", "7: a bar that spins itself to pieces, and its pieces in flight", fragments),
-    Case("contact", "8: blocks of failed and unfailed rock that meet at 1 m/s", contact),
+    Case("contact", "8: blocks of failed and unfailed rock that meet at 1 m/s", contact, quick=False),
     Case("numerical_fracture", "9: a bar that cannot break is drawn out", numerical_fracture),
 )
