@@ -102,7 +102,7 @@ def start_taichi(precision: str, arch: str, threads: int | None):
     import taichi as ti
 
     ensure_kernel_cache()
-    gc.collect()  # fields of runs before hang in cycles, and many runs in one process would pile them up
+    _forget_earlier_fields()
     real = ti.f64 if precision == "f64" else ti.f32
     # never ti.gpu: it crashes without Vulkan, or runs silently on a software Vulkan with wrong numbers
     wanted = [ti.cuda, ti.cpu] if arch == "cuda" else ti.cpu
@@ -114,6 +114,18 @@ def start_taichi(precision: str, arch: str, threads: int | None):
     if arch == "cuda" and ti.lang.impl.current_cfg().arch != ti.cuda:
         raise SceneError("arch = 'cuda' is refused: no usable CUDA device was found; use --arch cpu")
     return real, arch == "cuda"
+
+
+def _forget_earlier_fields() -> None:
+    """Free what the fields of earlier runs hold in this process, just before `ti.init` ends their life.
+
+    They hang in cycles, and Taichi 1.7.4 keeps them as keys among the arguments that its kernels have seen.
+    """
+    import taichi as ti
+
+    for kernel in getattr(ti.lang.impl.get_runtime(), "kernels", ()):
+        getattr(getattr(kernel, "mapper", None), "mapping", {}).clear()
+    gc.collect()
 
 
 class Run:

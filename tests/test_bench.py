@@ -80,6 +80,7 @@ def test_unknown_case_is_refused(capsys):
 
 
 @pytest.mark.skipif(shutil.which("g++") is None, reason="no g++")
+@pytest.mark.validation
 def test_twins_carry_a_flying_block(tmp_path):
     """Both carry a block in free flight: after 20 steps it keeps its speed."""
     from rsmpm_ti.bench.yardstick import NX, NY, Naive

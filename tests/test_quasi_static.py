@@ -136,6 +136,7 @@ def test_auto_comes_by_keyword_by_field_and_from_a_record_and_shows_its_number(c
     assert f"time_scale = {scene.time_scale:g}" in shown and "inertia adds up to 1 %" in shown
 
 
+@pytest.mark.validation
 def test_a_run_has_the_kinetic_share_that_auto_promised(tmp_path):
     scene = load_scene("intact", dx=2e-3, time_scale="auto").elastic()  # no failure: the promise is for the end
     scene = replace(scene, output=Output(frames=0, movie=False, vtu=0))

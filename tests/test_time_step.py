@@ -103,6 +103,7 @@ def rows_of(drive: Drive) -> np.ndarray:
     return history.table()
 
 
+@pytest.mark.validation
 def test_a_slow_test_gives_the_same_with_steps_that_adapt(restart_taichi):
     restart_taichi(ti.f64, 1)
     pulled = load_scene("intact", dx=5e-3, strain_end=-1.2e-4, time_scale=10.0).elastic()

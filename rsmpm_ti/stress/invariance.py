@@ -141,7 +141,7 @@ def single_precision(full: bool) -> Outcome:
 
 
 CASES = (
-    Case("symmetry", "16: a run mirrored, and turned by a quarter and a half", symmetry),
-    Case("scaling", "17: other units and scales", scaling),
+    Case("symmetry", "16: a run mirrored, and turned by a quarter and a half", symmetry, quick=False),
+    Case("scaling", "17: other units and scales", scaling, quick=False),
     Case("single_precision", "float32 against float64 over 100 000 small steps", single_precision, quick=False),
 )
