@@ -10,8 +10,9 @@ from rsmpm_ti.verify.case import Row, at_least, at_most, difference, relative, s
 from rsmpm_ti.verify.catalogue import CASES, MODULES
 from rsmpm_ti.verify.running import run_case
 
-LONGER = {"manufactured_b"}
-"""Cases of the quick tier that the suite leaves to its own longer tier: a minute, and `manufactured_a` is like it."""
+LONGER = {"manufactured_b", "uniaxial"}
+"""Cases of the quick tier that the suite leaves to its own longer tier: a minute, and `manufactured_a` is like the one;
+the hard case `uniform_failure` comes to the same strength as the other in 10 s."""
 
 QUICK = [
     pytest.param(name, marks=[pytest.mark.validation] * (name in LONGER)) for name, case in CASES.items() if case.quick
