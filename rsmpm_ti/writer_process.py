@@ -14,7 +14,6 @@ from rsmpm_ti.writer import REPORT
 NICENESS = 10
 """The solver goes first; painting takes the time that its threads leave."""
 
-
 WAITING = 4
 """Painted frames, VTU files and checkpoints that may wait for the thread that writes them."""
 
@@ -23,9 +22,8 @@ class Desk:
     """Does orders; their names are its methods. Compressing and encoding go on beside painting, in order."""
 
     def __init__(self):
+        self.gallery = None
         self._files, self._pending = ThreadPoolExecutor(max_workers=1), []
-
-    gallery = None
 
     def open(self, wanted) -> None:
         from rsmpm_ti.gallery import Gallery
