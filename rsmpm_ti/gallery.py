@@ -5,8 +5,9 @@ from pathlib import Path
 import numpy as np
 
 from rsmpm_ti.frames import Commission
-from rsmpm_ti.paint.figure import FramePainter, read_png, write_png
+from rsmpm_ti.paint.figure import FramePainter
 from rsmpm_ti.paint.movie import Movie
+from rsmpm_ti.paint.png import read_png, write_png
 from rsmpm_ti.paint.summary import summary_picture
 from rsmpm_ti.snapshot import Snapshot
 

@@ -21,7 +21,7 @@ LAYERS = """
 """A module imports only from modules to the left of its own name."""
 
 CRACK_LAYERS = "path wings tips growth aperture bands fragments emission".split()
-PAINT_LAYERS = "view layout chrome raster ggui kinds figure summary movie".split()
+PAINT_LAYERS = "view layout chrome raster ggui kinds png figure summary movie".split()
 """The same within `rsmpm_ti/paint/`, which sees nothing else of the package than PAINT_SEES."""
 
 VERIFY_LAYERS = """

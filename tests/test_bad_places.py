@@ -20,8 +20,8 @@ from rsmpm_ti import checkpoint, consistency, kernel_cache, run_folder
 from rsmpm_ti.errors import SceneError
 from rsmpm_ti.library import load_scene, machine
 from rsmpm_ti.output import CHECKPOINTS, write_checkpoint, write_json
-from rsmpm_ti.paint.figure import write_png
 from rsmpm_ti.paint.movie import Movie
+from rsmpm_ti.paint.png import write_png
 from rsmpm_ti.record import read_scene, to_plain
 from rsmpm_ti.run import Settings
 from rsmpm_ti.scene import main

@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 from PIL import Image
 
-from rsmpm_ti.paint.figure import write_png
 from rsmpm_ti.paint.movie import Movie, gif, movie_size
+from rsmpm_ti.paint.png import write_png
 from rsmpm_ti.paint.view import crack_palette
 
 

@@ -7,12 +7,13 @@ from snapshots import snapshot_of
 
 from rsmpm_ti.errors import SceneError
 from rsmpm_ti.paint import ggui as ggui_module
-from rsmpm_ti.paint.figure import FramePainter, slab, write_png
+from rsmpm_ti.paint.figure import FramePainter, slab
 from rsmpm_ti.paint.ggui import Ggui, probe, verdict
 from rsmpm_ti.paint.layout import lay_out
+from rsmpm_ti.paint.png import write_png
 from rsmpm_ti.paint.raster import Raster
 from rsmpm_ti.paint.summary import summary_picture
-from rsmpm_ti.paint.view import View, crack_palette, stress_palette
+from rsmpm_ti.paint.view import View, crack_palette, cracking_palette, margin_palette, stress_palette
 from rsmpm_ti.snapshot import HISTORY_COLUMNS, INTACT, SHEAR, TENSION
 
 pytestmark = pytest.mark.usefixtures("taichi_f64")
@@ -64,6 +65,16 @@ def test_tension_is_red_compression_blue_each_at_its_place_with_y_upwards():
     assert image[10, 20, 0] > image[10, 20, 2] and image[30, 60, 2] > image[30, 60, 0]
     for row, column in ((30, 20), (10, 60)):
         assert tuple(image[row, column]) == (184, 184, 184), "void elsewhere"
+
+
+@pytest.mark.parametrize("palette", [stress_palette(LIMIT), crack_palette(), cracking_palette(), margin_palette()])
+def test_table_of_colours_follows_the_ramp_to_half_a_level(palette):
+    """Against the colours that `Palette.colours` interpolates: 0.5 of rounding, and single precision."""
+    table = palette.table()
+    exact = palette.colours(np.linspace(-1.0, 1.0, len(table)), np.zeros(len(table), dtype=int))
+    assert np.abs(table - exact).max() <= 0.5 + 1e-3
+    steps = np.abs(np.diff(table.astype(int), axis=0)).max()
+    assert steps <= 1, "no colour between two of the table is further than one level from either"
 
 
 def test_square_has_the_size_of_its_particle():

@@ -3,12 +3,10 @@
 import functools
 import math
 import os
-from pathlib import Path
 
 import matplotlib
 import numpy as np
 from PIL import Image, ImageDraw, ImageFont
-from PIL.PngImagePlugin import PngInfo
 
 from rsmpm_ti.errors import refuse
 from rsmpm_ti.paint.chrome import MEGA, MILLI, draw_chrome
@@ -185,26 +183,3 @@ def draw_curve(picture: Image.Image, box: Box, across: np.ndarray, up: np.ndarra
 def mono_font(size: int) -> ImageFont.FreeTypeFont:
     """DejaVu Sans Mono from matplotlib's own files, so that no system font is needed."""
     return ImageFont.truetype(os.path.join(matplotlib.get_data_path(), "fonts", "ttf", "DejaVuSansMono.ttf"), size)
-
-
-def write_png(path: str | os.PathLike, image: np.ndarray, **notes: str) -> Path:
-    """Writes uint8 [h, w, 3] under its name only when complete; notes, such as the painter's name, go into the file."""
-    path = Path(path)
-    path.parent.mkdir(parents=True, exist_ok=True)
-    info = PngInfo()
-    for key, note in notes.items():
-        info.add_text(key, note)
-    part = path.with_name(f".{path.name}.part")
-    try:
-        # Level 1 writes in 0.1 s; the default takes 2.5 times as long for files 15 % smaller.
-        Image.fromarray(image).save(part, format="PNG", compress_level=1, pnginfo=info)
-        os.replace(part, path)
-    finally:
-        part.unlink(missing_ok=True)
-    return path
-
-
-def read_png(path: str | os.PathLike) -> np.ndarray:
-    """What `write_png` wrote, uint8 [h, w, 3]."""
-    with Image.open(path) as picture:
-        return np.array(picture.convert("RGB"))

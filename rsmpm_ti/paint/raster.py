@@ -28,6 +28,7 @@ class Raster:
         self.view = view
         self.palette = palette
         self.skipped = 0  # particles of the last image that had no finite position, size or value
+        self._table = palette.table()
         self._area = ti.field(ti.i32, shape=(3, view.height, view.width))
         self._cover = ti.field(ti.i32, shape=(view.height, view.width))
         self._value = ti.field(ti.i64, shape=(view.height, view.width))
@@ -48,7 +49,7 @@ class Raster:
         splat(*sums, folded, squares.column, squares.row, squares.half, fixed, squares.mode)
         add_modes(self._area, self._cover)
         gap = round(GAP * spacing)
-        resolve(*sums, self._cover, folded, self.palette.ramp, self.palette.marks(), gap, image)
+        resolve(*sums, self._cover, folded, self._table, self.palette.marks(), gap, image)
         return image
 
     def close(self) -> None:
@@ -120,6 +121,16 @@ def reach(cover, i, j, di, dj, gap):
     return steps
 
 
+@ti.func
+def level(area: ti.template(), value: ti.template(), side: ti.template(), folded: ti.template(), levels, k, m):
+    """Where the table of `levels` colours shows what the intact rock of pixel (k, m) carries in the mean."""
+    mean = ti.cast(value[k, m], ti.f32) / (ti.cast(ti.max(1, area[0, k, m]), ti.f32) * UNIT)
+    if ti.static(folded):
+        mean = ti.select(side[k, m] < 0, -mean, mean)
+    place = (ti.min(ti.f32(1.0), ti.max(ti.f32(-1.0), mean)) + 1.0) * (ti.f32(0.5) * (levels - 1))
+    return ti.cast(place + 0.5, ti.i32)
+
+
 @ti.kernel
 def resolve(
     area: ti.template(),
@@ -127,7 +138,7 @@ def resolve(
     side: ti.template(),
     cover: ti.template(),
     folded: ti.template(),
-    ramp: ti.types.ndarray(dtype=ti.f32, ndim=2),
+    table: ti.types.ndarray(dtype=ti.u8, ndim=2),
     marks: ti.types.ndarray(dtype=ti.f32, ndim=2),
     gap: ti.i32,
     image: ti.types.ndarray(dtype=ti.u8, ndim=3),
@@ -137,37 +148,38 @@ def resolve(
     Between particles that were seeded with jitter there are slivers that no square covers. A pixel with rock on both
     sides, at most `gap` pixels apart, belongs to the rock and takes the nearer side's colour.
     """
-    for i, j in ti.ndrange(*value.shape):
-        k, m = i, j
-        rock = ti.min(cover[i, j], UNIT) / UNIT
-        if 0 < gap and cover[i, j] < UNIT:
-            line = 0  # along the row, along the column, along both diagonals, until rock is found on both sides
-            while line < 4:
-                di, dj = ti.min(1, line), (1 - line if line < 2 else 5 - 2 * line)
-                widest = gap if line < 2 else gap * 5 // 7  # a diagonal step is longer
-                before = reach(cover, i, j, -di, -dj, widest)
-                if before <= widest:  # else no rock on one side: most of the void around the specimen
-                    after = reach(cover, i, j, di, dj, widest + 1 - before)
-                    if before + after - 1 <= widest:
-                        rock = 1.0
-                        line = 4
-                        if 4 * cover[i, j] < UNIT:
-                            step = after if after < before else -before
-                            k, m = i + step * di, j + step * dj
-                line += 1
-        if rock == 0.0:
-            for c in ti.static(range(3)):
-                image[i, j, c] = ti.cast(ti.round(marks[0, c], ti.i32), ti.u8)
-        else:
-            full = ti.max(1, ti.min(cover[k, m], UNIT))
-            tension = ti.min(1.0, area[1, k, m] / full)
-            shear = ti.min(1.0 - tension, area[2, k, m] / full)
-            mean = value[k, m] / ti.max(1, area[0, k, m]) / UNIT
-            if ti.static(folded):
-                mean = ti.select(side[k, m] < 0, -mean, mean)
-            place = (ti.min(1.0, ti.max(-1.0, mean)) + 1.0) * 0.5 * (ramp.shape[0] - 1)
-            left = ti.min(int(place), ramp.shape[0] - 2)
-            for c in ti.static(range(3)):
-                intact = ramp[left, c] + (place - left) * (ramp[left + 1, c] - ramp[left, c])
-                colour = tension * marks[1, c] + shear * marks[2, c] + (1.0 - tension - shear) * intact
-                image[i, j, c] = ti.cast(ti.round(rock * colour + (1.0 - rock) * marks[0, c], ti.i32), ti.u8)
+    one = ti.f32(1.0)
+    for i in range(cover.shape[0]):
+        for j in range(cover.shape[1]):
+            k, m = i, j
+            rock = ti.cast(ti.min(cover[i, j], UNIT), ti.f32) / UNIT
+            if 0 < gap and cover[i, j] < UNIT:
+                line = 0  # along the row, along the column, along both diagonals, until rock is found on both sides
+                while line < 4:
+                    di, dj = ti.min(1, line), (1 - line if line < 2 else 5 - 2 * line)
+                    widest = gap if line < 2 else gap * 5 // 7  # a diagonal step is longer
+                    before = reach(cover, i, j, -di, -dj, widest)
+                    if before <= widest:  # else no rock on one side: most of the void around the specimen
+                        after = reach(cover, i, j, di, dj, widest + 1 - before)
+                        if before + after - 1 <= widest:
+                            rock = one
+                            line = 4
+                            if 4 * cover[i, j] < UNIT:
+                                step = after if after < before else -before
+                                k, m = i + step * di, j + step * dj
+                    line += 1
+            if rock == 0.0:
+                for c in ti.static(range(3)):
+                    image[i, j, c] = ti.cast(ti.cast(marks[0, c], ti.i32), ti.u8)
+            else:
+                at = level(area, value, side, folded, table.shape[0], k, m)
+                if rock == 1.0 and area[0, k, m] == cover[k, m]:  # most pixels: nothing but intact rock
+                    for c in ti.static(range(3)):
+                        image[i, j, c] = table[at, c]
+                else:
+                    full = ti.cast(ti.max(1, ti.min(cover[k, m], UNIT)), ti.f32)
+                    tension = ti.min(one, area[1, k, m] / full)
+                    shear = ti.min(one - tension, area[2, k, m] / full)
+                    for c in ti.static(range(3)):
+                        colour = tension * marks[1, c] + shear * marks[2, c] + (one - tension - shear) * table[at, c]
+                        image[i, j, c] = ti.cast(ti.round(rock * colour + (one - rock) * marks[0, c], ti.i32), ti.u8)

@@ -11,7 +11,8 @@ from matplotlib.patches import Patch
 from matplotlib.patheffects import withStroke
 
 from rsmpm_ti.paint.chrome import DPI, MEGA, MILLI, Wording
-from rsmpm_ti.paint.figure import FramePainter, load_curve, write_png
+from rsmpm_ti.paint.figure import FramePainter, load_curve
+from rsmpm_ti.paint.png import write_png
 from rsmpm_ti.paint.view import crack_palette
 from rsmpm_ti.snapshot import Snapshot
 

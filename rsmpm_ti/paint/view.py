@@ -12,6 +12,9 @@ INFLATE = 1.04
 LARGEST_SQUARE = 2.0
 """In median half-sizes: a failed particle whose volume has run away must not cover the picture."""
 
+LEVELS = 4097
+"""Colours of a `Palette.table`: 16 for each of a ramp's, and odd, so that the value 0 has one of its own."""
+
 
 @dataclass(frozen=True, kw_only=True)
 class View:
@@ -42,6 +45,12 @@ class Palette:
     def marks(self) -> np.ndarray:
         """Colours that failure modes 1 and 2 select, after that of the void, float32 [3, 3]."""
         return np.array((self.void, self.tension, self.shear), dtype=np.float32)
+
+    def table(self) -> np.ndarray:
+        """The ramp in LEVELS steps, uint8 [LEVELS, 3]: a colour is then one look-up, off by half a step of 255."""
+        place = np.linspace(0.0, len(self.ramp) - 1.0, LEVELS)
+        known = np.arange(len(self.ramp))
+        return np.rint([np.interp(place, known, channel) for channel in self.ramp.T]).astype(np.uint8).T.copy()
 
     def colours(self, value: np.ndarray, mode: np.ndarray) -> np.ndarray:
         """Colour of each particle, float32 [n, 3]: `value` in limits, -1 to 1, `mode` as in a Snapshot."""

@@ -1,0 +1,43 @@
+"""PNG files: written whole or not at all, with notes such as the painter's name in them."""
+
+import os
+import struct
+import zlib
+from pathlib import Path
+
+import fpng
+import numpy as np
+from PIL import Image
+
+NOTES_AT = 33
+"""Bytes of the signature and of the first chunk, which must be IHDR; others may follow in any order."""
+
+
+def write_png(path: str | os.PathLike, image: np.ndarray, **notes: str) -> Path:
+    """Writes uint8 [h, w, 3] under its name only when complete; notes go into the file as text (Latin-1).
+
+    fpng takes a tenth of Pillow's time, which goes into trying filters, for files of the same size.
+    """
+    path = Path(path)
+    path.parent.mkdir(parents=True, exist_ok=True)
+    part = path.with_name(f".{path.name}.part")
+    data = fpng.from_ndarray(np.ascontiguousarray(image))
+    texts = [text_chunk(key, note) for key, note in notes.items()]
+    try:
+        part.write_bytes(b"".join((data[:NOTES_AT], *texts, data[NOTES_AT:])))
+        os.replace(part, path)
+    finally:
+        part.unlink(missing_ok=True)
+    return path
+
+
+def text_chunk(key: str, note: str) -> bytes:
+    """A tEXt chunk (PNG specification, 11.3.3.2): length, type, data and the check sum of the latter two."""
+    body = b"tEXt" + key.encode("latin-1") + b"\0" + note.encode("latin-1")
+    return struct.pack(">I", len(body) - 4) + body + struct.pack(">I", zlib.crc32(body))
+
+
+def read_png(path: str | os.PathLike) -> np.ndarray:
+    """What `write_png` wrote, uint8 [h, w, 3]."""
+    with Image.open(path) as picture:
+        return np.array(picture.convert("RGB"))
