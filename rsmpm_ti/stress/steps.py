@@ -62,8 +62,8 @@ def watch(piece: Piece, cfl: float, velocity: np.ndarray) -> tuple[int, float, s
 OFFSETS = (0.0, 1e-4, 0.01, 0.05, 0.1, 0.2, 0.249, 0.2501, 0.26, 0.3, 0.4, 0.499, 0.501, 0.6, 0.7, 0.749, 0.7501, 0.9)
 """Where the block sits in its cells: among them just before and after particles of the edge reach a new node."""
 
-CROSSED = (0.2501, 0.26, 0.3, 0.7501)
-"""Those of them where particles of the edge have gone less than a tenth of a cell beyond a line of the grid."""
+CROSSING = 0.25
+"""Offset at which the first particles leave the cells that they were seeded in."""
 
 
 def holds(piece: Piece, cfl: float, offset: float) -> bool:
@@ -112,8 +112,9 @@ def _limits() -> list[Row]:
                 piece, offsets, why = Piece.of(scene), OFFSETS, "what the solver states"
                 if isinstance(shape, Linear) and transfer.affine:
                     none = "none holds: a node of mass m r takes a speed of 1/r, and C keeps its gradient"
-                    rows.append(seen(f"{name}, just crossed", largest_cfl(piece, CROSSED), none))
-                    name, offsets = f"{name}, else", tuple(offset for offset in OFFSETS if offset not in CROSSED)
+                    crossed = tuple(offset for offset in OFFSETS if offset > CROSSING)
+                    rows.append(seen(f"{name}, crossed", largest_cfl(piece, crossed), none))
+                    name, offsets = f"{name}, none crossed", tuple(o for o in OFFSETS if o < CROSSING)
                 rows.append(at_least(name, largest_cfl(piece, offsets), stable_cfl(scene), why))
     return rows
 
