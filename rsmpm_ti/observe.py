@@ -1,13 +1,12 @@
-"""What is seen of a run while it goes: history rows, failure events, snapshots, and the guard that stops it."""
+"""What is seen of a run while it goes: history rows, failure events, and the guard that stops it."""
 
 from dataclasses import dataclass
 
 import numpy as np
 
 from rsmpm_ti.errors import UnstableRun
-from rsmpm_ti.margin import margins
 from rsmpm_ti.measure import Survey
-from rsmpm_ti.snapshot import HISTORY_COLUMNS, Snapshot
+from rsmpm_ti.snapshot import HISTORY_COLUMNS
 from rsmpm_ti.state import Simulation
 from rsmpm_ti.stepper import Clock
 
@@ -50,80 +49,14 @@ class EventTable:
 
 def read_events(sim: Simulation) -> EventTable:
     """All events so far, sorted by time, then particle id, so that threads do not show."""
-    events, n = sim.events, sim.events.count[None]
     names = ["time", "x", "mode", "sigma_1", "sigma_3", "released", "id"]
-    if events.directional:
+    if sim.events.directional:
         names.append("crack_angle")
-    columns = {name: getattr(events, name).to_numpy()[:n] for name in names}
+    n = sim.events.count[None]
+    columns = {name: getattr(sim.events, name).to_numpy()[:n] for name in names}
     order = np.lexsort((columns["id"], columns["time"]))
     columns = {name: column[order] for name, column in columns.items()}
-    return EventTable(**columns, onset=float(events.onset[None]))
-
-
-def take_snapshot(sim: Simulation, time: float) -> Snapshot:
-    """Copy the particles out, in the order of their ids, without those that were dropped."""
-    particles = sim.particles
-    ids = particles.id.to_numpy()
-    order = np.argsort(ids, kind="stable")
-    order = order[particles.volume.to_numpy()[order] != 0.0]
-    n = len(order)
-
-    def column(field):
-        return field.to_numpy()[order].astype(np.float64)
-
-    u, packed = column(particles.u), column(particles.sigma)
-    sigma = np.zeros((n, 3, 3))
-    places = ((0, 0), (1, 1), (2, 2), (0, 1), (1, 2), (2, 0))
-    for k in range(packed.shape[1]):
-        a, b = places[k]
-        sigma[:, a, b] = sigma[:, b, a] = packed[:, k]
-    sigma_1, sigma_3 = extreme_stresses(packed)
-    mode, failure_time = np.zeros(n, dtype=np.int8), np.full(n, np.nan)
-    if particles.breaks:
-        mode = (particles.failed if particles.cracks else particles.mode).to_numpy()[order].astype(np.int8)
-        events = read_events(sim)
-        of_id = np.full(particles.count, np.nan)
-        of_id[events.id] = events.time
-        failure_time = of_id[ids[order]]
-    margin, governs, damage = (values[order] for values in margins(sim))
-    aperture, crack_angle = np.zeros(n), np.full(n, np.nan)
-    if particles.cracks:
-        aperture = sim.band * column(particles.opening).max(axis=1)
-        begun = particles.mode.to_numpy()[order] > 0
-        crack_angle[begun] = np.degrees(column(particles.crack_angle)[begun]) % 180.0
-    return Snapshot(
-        time=time,
-        id=ids[order],
-        x=column(particles.reference) + u,
-        displacement=u,
-        velocity=column(particles.v),
-        sigma=sigma,
-        sigma_1=sigma_1,
-        sigma_3=sigma_3,
-        volume=column(particles.volume) * column(particles.J),
-        strength=column(particles.strength) if particles.varied else np.ones(n),
-        failure_mode=mode,
-        failure_time=failure_time,
-        margin=margin,
-        governs=governs.astype(np.int8),
-        damage=damage,
-        aperture=aperture,
-        crack_angle=crack_angle,
-    )
-
-
-def extreme_stresses(packed: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Largest and smallest principal stress of packed ones (see tensors.py), [n] each; in 2D by the closed form, in a
-    tenth of the time of an eigenvalue solver. What is not finite counts as 0 or as a very large number.
-    """
-    packed = np.nan_to_num(packed, posinf=1e300, neginf=-1e300)
-    if packed.shape[1] == 4:
-        xx, yy, zz, xy = packed.T
-        centre, radius = 0.5 * xx + 0.5 * yy, np.hypot(0.5 * xx - 0.5 * yy, xy)
-        return np.maximum(centre + radius, zz), np.minimum(centre - radius, zz)
-    xx, yy, zz, xy, yz, zx = packed.T
-    principal = np.linalg.eigvalsh(np.stack([xx, xy, zx, xy, yy, yz, zx, yz, zz], axis=1).reshape(-1, 3, 3))
-    return principal[:, 2], principal[:, 0]
+    return EventTable(**columns, onset=float(sim.events.onset[None]))
 
 
 class History:

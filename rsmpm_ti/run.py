@@ -230,20 +230,20 @@ class Run:
     def _output(self) -> None:
         if self.writer is None:
             return
-        from rsmpm_ti.observe import take_snapshot
+        from rsmpm_ti.readout import read_out
 
         start = time.perf_counter()
         share = self.clock.share
         frame = self.timetable.frame_due(share, self.history.failed)
         vtu = self.timetable.vtu_due(share)
         if frame or vtu:
-            snapshot = take_snapshot(self.sim, self.clock.time)
+            readout = read_out(self.sim, self.clock.time)
             if frame:
-                self.writer.frame(self.frame_count, snapshot, self.history.table())
+                self.writer.frame(self.frame_count, readout, self.history.table())
                 self.frame_count += 1
             if vtu:
-                self.vtus.append((snapshot.time, f"particles_{len(self.vtus):04d}.vtu"))
-                self.writer.vtu(list(self.vtus), snapshot)
+                self.vtus.append((readout.time, f"particles_{len(self.vtus):04d}.vtu"))
+                self.writer.vtu(list(self.vtus), readout)
             self.painting_s += time.perf_counter() - start
 
     def _checkpoint(self) -> None:
@@ -278,7 +278,8 @@ class Run:
 
     def _finish(self, stopped: str, failure: Exception | None) -> Result:
         from rsmpm_ti.fracture import measure_fracture
-        from rsmpm_ti.observe import read_events, take_snapshot
+        from rsmpm_ti.observe import read_events
+        from rsmpm_ti.readout import take_snapshot
 
         speed = self._speed()
         history, events = self.history.table(), read_events(self.sim)

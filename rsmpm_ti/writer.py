@@ -19,6 +19,7 @@ import numpy as np
 
 from rsmpm_ti.errors import SceneError
 from rsmpm_ti.frames import Commission
+from rsmpm_ti.readout import Readout
 from rsmpm_ti.snapshot import Snapshot
 
 WAITING_BYTES = 512 * 2**20
@@ -54,12 +55,12 @@ class Writer:
         """The movie begins with so many frames that are there already."""
         self._order("refilm", count)
 
-    def frame(self, number: int, snapshot: Snapshot, history: np.ndarray) -> None:
-        self._order("frame", number, snapshot, history)
+    def frame(self, number: int, readout: Readout, history: np.ndarray) -> None:
+        self._order("frame", number, readout, history)
 
-    def vtu(self, entries: list[tuple[float, str]], snapshot: Snapshot) -> None:
+    def vtu(self, entries: list[tuple[float, str]], readout: Readout) -> None:
         """entries: (time [s], file name) of every VTU so far, the last of which is to be written."""
-        self._order("vtu", entries, snapshot)
+        self._order("vtu", entries, readout)
 
     def checkpoint(self, arrays: dict[str, np.ndarray]) -> None:
         self._order("checkpoint", arrays)

@@ -35,11 +35,11 @@ class Desk:
     def refilm(self, count: int) -> None:
         self._later(self.gallery.refilm, count)
 
-    def frame(self, number: int, snapshot, history) -> None:
-        self._later(self.gallery.write, number, self.gallery.paint(number, snapshot, history))
+    def frame(self, number: int, readout, history) -> None:
+        self._later(self.gallery.write, number, self.gallery.paint(number, readout.snapshot(), history))
 
-    def vtu(self, entries, snapshot) -> None:
-        self._later(write_vtu, self.out / entries[-1][1], snapshot)
+    def vtu(self, entries, readout) -> None:
+        self._later(write_vtu, self.out / entries[-1][1], readout.snapshot())
         self._later(write_pvd, self.out / "particles.pvd", entries)
 
     def checkpoint(self, arrays) -> None:

@@ -13,7 +13,8 @@ from rsmpm_ti.boundaries import Platen, Wall
 from rsmpm_ti.errors import SceneError
 from rsmpm_ti.frames import load_limits
 from rsmpm_ti.laws import Hooke, MohrCoulomb, NoViscosity, Rock, Unbreakable
-from rsmpm_ti.observe import History, read_events, take_snapshot
+from rsmpm_ti.observe import History, read_events
+from rsmpm_ti.readout import take_snapshot
 from rsmpm_ti.regions import Box, Difference, Disc
 from rsmpm_ti.seeding import Jittered, Lattice
 from rsmpm_ti.shape import Linear, QuadraticBSpline

@@ -180,7 +180,7 @@ def test_heterogeneous_scene_survives_json():
 
 
 def test_uniform_scene_has_no_field_of_strength(taichi_f64):
-    from rsmpm_ti.observe import take_snapshot
+    from rsmpm_ti.readout import take_snapshot
     from rsmpm_ti.state import Simulation
 
     scene = pulled(Uniform())
@@ -193,7 +193,7 @@ def test_uniform_scene_has_no_field_of_strength(taichi_f64):
 
 @pytest.mark.parametrize("length", [0.0, 3 * MM])
 def test_strength_stays_with_its_particle_through_sorting(taichi_f64, length):
-    from rsmpm_ti.observe import take_snapshot
+    from rsmpm_ti.readout import take_snapshot
     from rsmpm_ti.sorting import sort_particles
     from rsmpm_ti.state import Simulation
 

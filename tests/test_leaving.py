@@ -10,7 +10,8 @@ from rsmpm_ti.drive import Drive
 from rsmpm_ti.errors import SceneError, UnstableRun
 from rsmpm_ti.laws import Hooke, MohrCoulomb, Rock
 from rsmpm_ti.measure import survey
-from rsmpm_ti.observe import guard, take_snapshot
+from rsmpm_ti.observe import guard
+from rsmpm_ti.readout import take_snapshot
 from rsmpm_ti.regions import Box
 from rsmpm_ti.spec import Body, Domain, Loading, Scene, Schedule
 from rsmpm_ti.stepper import Clock

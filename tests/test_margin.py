@@ -12,8 +12,8 @@ from rsmpm_ti.checkpoint import particle_arrays
 from rsmpm_ti.directional import Directional
 from rsmpm_ti.heterogeneity import Weibull
 from rsmpm_ti.laws import Hooke, MohrCoulomb, Rock, Unbreakable
-from rsmpm_ti.observe import take_snapshot
 from rsmpm_ti.output import write_vtu
+from rsmpm_ti.readout import take_snapshot
 from rsmpm_ti.regions import Box
 from rsmpm_ti.snapshot import SHEAR, TENSION
 from rsmpm_ti.softening import ExponentialSoftening, LinearSoftening

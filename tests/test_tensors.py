@@ -6,7 +6,7 @@ import taichi as ti
 from harness import epsilon, flat, matrix, on_rows, rounded, vector
 from plain_mpm import PLACES, tensor
 
-from rsmpm_ti.observe import extreme_stresses
+from rsmpm_ti.readout import extreme_stresses
 from rsmpm_ti.tensors import (
     PACKED_LENGTH,
     double_contraction,

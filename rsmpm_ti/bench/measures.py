@@ -11,7 +11,7 @@ from rsmpm_ti.bench.settings import TRANSFERS, Setting
 from rsmpm_ti.boundaries import Wall
 from rsmpm_ti.drive import Drive
 from rsmpm_ti.laws import Hooke, NoViscosity, Rock, Unbreakable
-from rsmpm_ti.observe import take_snapshot
+from rsmpm_ti.readout import take_snapshot
 from rsmpm_ti.regions import Box
 from rsmpm_ti.run import start_taichi
 from rsmpm_ti.seeding import Lattice

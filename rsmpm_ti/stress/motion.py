@@ -8,8 +8,9 @@ import taichi as ti
 
 from rsmpm_ti.errors import UnstableRun
 from rsmpm_ti.laws import Hooke, MohrCoulomb, Rock
-from rsmpm_ti.observe import History, take_snapshot
+from rsmpm_ti.observe import History
 from rsmpm_ti.parting import parted, parting_warning
+from rsmpm_ti.readout import take_snapshot
 from rsmpm_ti.regions import Box, Disc
 from rsmpm_ti.shape import Gimp, Linear, QuadraticBSpline
 from rsmpm_ti.spec import Body, Schedule

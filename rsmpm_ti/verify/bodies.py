@@ -5,7 +5,7 @@ import math
 import numpy as np
 
 from rsmpm_ti.laws import Hooke, NoViscosity, Rock, Unbreakable
-from rsmpm_ti.observe import take_snapshot
+from rsmpm_ti.readout import take_snapshot
 from rsmpm_ti.regions import Disc
 from rsmpm_ti.shape import Linear, QuadraticBSpline
 from rsmpm_ti.sorting import sort_particles

@@ -7,7 +7,7 @@ import taichi as ti
 
 from rsmpm_ti.drive import Drive
 from rsmpm_ti.laws import NoViscosity
-from rsmpm_ti.observe import take_snapshot
+from rsmpm_ti.readout import take_snapshot
 from rsmpm_ti.snapshot import Snapshot
 from rsmpm_ti.spec import Scene, Schedule
 from rsmpm_ti.starts import Press

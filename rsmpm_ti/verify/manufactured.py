@@ -15,7 +15,7 @@ import taichi as ti
 from rsmpm_ti.boundaries import Wall
 from rsmpm_ti.drive import Drive
 from rsmpm_ti.laws import Hooke, NoViscosity, Rock, Unbreakable
-from rsmpm_ti.observe import take_snapshot
+from rsmpm_ti.readout import take_snapshot
 from rsmpm_ti.regions import Box, Difference, Disc
 from rsmpm_ti.seeding import Lattice
 from rsmpm_ti.shape import Gimp, Linear, QuadraticBSpline

@@ -7,7 +7,7 @@ from scipy.integrate import solve_bvp
 
 from rsmpm_ti.boundaries import Fixed, Wall
 from rsmpm_ti.drive import Drive
-from rsmpm_ti.observe import take_snapshot
+from rsmpm_ti.readout import take_snapshot
 from rsmpm_ti.regions import Box
 from rsmpm_ti.shape import Linear
 from rsmpm_ti.spec import Body, Domain, Loading, Scene, Schedule

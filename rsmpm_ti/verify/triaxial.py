@@ -17,7 +17,8 @@ import numpy as np
 
 from rsmpm_ti import load_scene
 from rsmpm_ti.boundaries import Platen
-from rsmpm_ti.observe import History, read_events, take_snapshot
+from rsmpm_ti.observe import History, read_events
+from rsmpm_ti.readout import take_snapshot
 from rsmpm_ti.regions import Box, Disc
 from rsmpm_ti.seeding import Jittered, Lattice
 from rsmpm_ti.shape import Linear

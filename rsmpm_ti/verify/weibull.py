@@ -10,7 +10,8 @@ from rsmpm_ti import load_scene
 from rsmpm_ti.boundaries import Platen
 from rsmpm_ti.heterogeneity import Weibull
 from rsmpm_ti.laws import NoViscosity
-from rsmpm_ti.observe import read_events, take_snapshot
+from rsmpm_ti.observe import read_events
+from rsmpm_ti.readout import take_snapshot
 from rsmpm_ti.regions import Box
 from rsmpm_ti.seeding import Lattice
 from rsmpm_ti.shape import Linear
