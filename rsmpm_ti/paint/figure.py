@@ -3,6 +3,7 @@
 import functools
 import math
 import os
+from dataclasses import replace
 
 import matplotlib
 import numpy as np
@@ -114,14 +115,17 @@ class FramePainter:
         image[panel.top - 1 : panel.bottom + 1, panel.left - 1 : panel.right + 1] = 0  # the axes' frame
         image[panel.top : panel.bottom, panel.left : panel.right] = self.panel(snapshot)
 
-        picture = Image.fromarray(image)
+        text, inset = self.layout.text, self.layout.inset
+        column = image[text.top : inset.bottom + MARGIN, text.left :]
+        picture = Image.fromarray(column)  # of the whole frame the way there and back takes 10 ms
         if limits is not None:
-            draw_curve(picture, self.layout.inset, strain / limits[0], load / limits[1])
+            box = replace(inset, left=inset.left - text.left, top=inset.top - text.top)
+            draw_curve(picture, box, strain / limits[0], load / limits[1])
         draw = ImageDraw.Draw(picture)
         for line, words in enumerate(self._lines(snapshot, strain, load, frame)):
-            place = self.layout.text.left, self.layout.text.top + line * TEXT_LINE
-            draw.text(place, words, fill=(0, 0, 0), font=mono_font(18))
-        return np.array(picture)
+            draw.text((0, line * TEXT_LINE), words, fill=(0, 0, 0), font=mono_font(18))
+        column[:] = picture
+        return image
 
     def close(self) -> None:
         """Gives back the painter's window, if it has one."""
