@@ -67,7 +67,7 @@ def check_memory(scene) -> None:
 
 def check_precision(scene, precision: str) -> None:
     """Refuse single precision where it cannot tell places within a cell: it rounds them to 6e-8 of a coordinate."""
-    far = max(map(abs, (*scene.domain.lower, *scene.domain.upper)))
+    far = scene.domain.farthest
     if precision == "f32" and not scene.domain.dx >= SINGLE_SHARE * far:
         allowed = f"'f64' where dx is less than {SINGLE_SHARE:g} of the largest coordinate, {far:g} m"
         raise refuse("precision", precision, allowed, "or move the domain to the origin")

@@ -20,8 +20,9 @@ class Grid:
         domain, dim = scene.domain, scene.dim
         self.dim, self.dx, self.inv_dx = dim, domain.dx, 1.0 / domain.dx
         cells = np.ceil((np.array(domain.upper) - np.array(domain.lower)) / domain.dx - 1e-6).astype(int)
-        self.nodes = tuple(int(c) + 2 * MARGIN + 1 for c in cells)
-        self.origin = tuple(float(a) - MARGIN * domain.dx for a in domain.lower)
+        beyond = MARGIN + domain.room
+        self.nodes = tuple(int(c) + 2 * beyond + 1 for c in cells)
+        self.origin = tuple(float(a) - beyond * domain.dx for a in domain.lower)
         lower, upper = [FAR] * dim, [-FAR] * dim
         for boundary in scene.loading.boundaries:
             row = round((boundary.position - self.origin[boundary.axis]) / domain.dx)

@@ -132,7 +132,7 @@ def guard(sim: Simulation, clock: Clock, survey: Survey) -> None:
         raise UnstableRun(
             f"{survey.sick} particles are not finite or left the domain {at}{where}; likely cause: a time step too "
             f"long for this loading, or fragments flying off; lower schedule.cfl, enlarge the domain, or take "
-            f"domain.outside = drop"
+            f"domain.outside = drop or grow"
         )
     if survey.J_min < J_BOUNDS[0] or survey.J_max > J_BOUNDS[1]:
         raise UnstableRun(

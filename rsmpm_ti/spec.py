@@ -33,12 +33,16 @@ FINEST = 1e-9
 FINEST_SHARE = 1e-9
 """Smallest cell over the largest coordinate: round-off of a particle's place is then 1e-7 of a cell."""
 
+GROWTH = 4
+"""Lengths of a domain's longest edge by which it may grow on every side: each asks for pointers to empty blocks."""
+
 
 @dataclass(frozen=True, kw_only=True)
 class Domain:
     """The background grid: a box of cells of edge dx [m]; `grid` is 'dense', 'sparse' or 'auto' (by occupancy).
 
-    A particle that flies more than two cells beyond it ends the run, or with outside = 'drop' is taken out of it.
+    A particle that flies more than two cells beyond it ends the run; with outside = 'drop' it is taken out of it; with
+    'grow' the grid, which must then be sparse, grows to where particles are, up to GROWTH domain lengths on every side.
     """
 
     lower: tuple[float, ...]
@@ -60,9 +64,12 @@ class Domain:
             raise refuse("domain.upper", self.upper, allowed)
         if self.grid not in ("dense", "sparse", "auto"):
             raise refuse("domain.grid", self.grid, "'dense', 'sparse' or 'auto'")
-        if self.outside not in ("stop", "drop"):
-            raise refuse("domain.outside", self.outside, "'stop' or 'drop'")
-        far = max(map(abs, (*self.lower, *self.upper)))
+        if self.outside not in ("stop", "drop", "grow"):
+            raise refuse("domain.outside", self.outside, "'stop', 'drop' or 'grow'")
+        if self.outside == "grow" and self.grid == "dense":
+            allowed, remedy = "'stop' or 'drop' with a dense grid", "set domain.grid = 'sparse' to let it grow"
+            raise refuse("domain.outside", self.outside, allowed, remedy)
+        far = self.farthest
         if not self.dx >= FINEST_SHARE * far:
             allowed = f"at least {FINEST_SHARE * far:.4g} m, {FINEST_SHARE:g} of the largest coordinate"
             raise refuse("domain.dx", self.dx, allowed, "move the domain to the origin: places are lost to round-off")
@@ -73,6 +80,22 @@ class Domain:
     @property
     def dim(self) -> int:
         return len(self.lower)
+
+    @property
+    def room(self) -> int:
+        """Cells beyond the domain, on every side, into which the grid may grow: as many as 32-bit numbers count."""
+        if self.outside != "grow":
+            return 0
+        edges = [(b - a) / self.dx for a, b in zip(self.lower, self.upper, strict=True)]
+        room = math.ceil(GROWTH * max(edges))
+        while room and math.prod(edge + 2.0 * room + 10.0 for edge in edges) > MOST:
+            room //= 2
+        return room
+
+    @property
+    def farthest(self) -> float:
+        """Largest coordinate that a particle may have [m]."""
+        return max(map(abs, (*self.lower, *self.upper))) + self.room * self.dx
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -242,6 +265,9 @@ class Scene:
             )
         if self.dim == 3 and self.rock.elasticity.plane_stress:
             raise refuse("rock.elasticity.plane_stress", True, "False in 3D", "a plate is a 2D scene")
+        if self.domain.outside == "grow" and self.rock.averaging.acts:
+            remedy = "enlarge the domain: averages lie on a dense grid"
+            raise refuse("domain.outside", "grow", "'stop' or 'drop' in rock with rock.averaging", remedy)
         check_confined_rock(self.loading.confinement, self.rock.elasticity)
         check_bodies(self)
         check_loading(self)

@@ -259,7 +259,7 @@ class Simulation:
         self.particles = Particles(scene, count, real)
         self.traversal = traversal(count, gpu, deterministic)
         self.nodes = Nodes(scene, self.grid, real, use_sparse_grid(scene, count))
-        few = not gpu and math.prod(self.grid.nodes) < FEW_NODES
+        few = not gpu and math.prod(n - 2 * scene.domain.room for n in self.grid.nodes) < FEW_NODES
         self.nodes.serial = self.traversal.serial or self.traversal.ordered or few
         self.events, self.ledger = Events(scene, count, real), Ledger(scene, self.traversal.count)
         self.averaging = scene.rock.criterion.breaks and scene.rock.averaging.acts
@@ -320,6 +320,8 @@ def initial_velocity(scene: Scene, body_index: int, x: np.ndarray) -> np.ndarray
 
 def use_sparse_grid(scene: Scene, particle_count: int) -> bool:
     """'auto' takes the sparse grid where less than a quarter of the nodes can hold material."""
+    if scene.domain.outside == "grow":
+        return True
     if scene.domain.grid != "auto":
         return scene.domain.grid == "sparse"
     per_cell = min(body.seeding.particles_per_axis for body in scene.bodies) ** scene.dim

@@ -161,7 +161,7 @@ def _edge(piece: Piece, name: str, fraction: float) -> list[Row]:
     return [
         at_most(f"{at}: share of energy created", created, 1.2 * beat(0.5), BEAT),
         at_most(f"{at}: largest speed over the first", fastest, 3.0, "waves of both directions meet at corners"),
-        at_most(f"{at}: momentum lost", drift, 1e-12, "round-off of 2000 steps; lighter nodes than 1e-12 are dropped"),
+        at_most(f"{at}: momentum lost", drift, 1e-12, "round-off of 2000 steps"),
     ]
 
 
