@@ -101,7 +101,10 @@ class Settings:
 def start_taichi(precision: str, arch: str, threads: int | None):
     import taichi as ti
 
+    from rsmpm_ti.compiling import hasten_compiling
+
     ensure_kernel_cache()
+    hasten_compiling()
     _forget_earlier_fields()
     real = ti.f64 if precision == "f64" else ti.f32
     # never ti.gpu: it crashes without Vulkan, or runs silently on a software Vulkan with wrong numbers

@@ -3,8 +3,11 @@
 import pytest
 import taichi as ti
 
+from rsmpm_ti.compiling import hasten_compiling
+
 
 def start(real, threads: int = 2) -> None:
+    hasten_compiling()
     ti.init(
         arch=ti.cpu, default_fp=real, cpu_max_num_threads=threads, offline_cache=True, log_level=ti.ERROR,
         cfg_optimization=False,  # as in a run

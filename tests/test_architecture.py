@@ -16,7 +16,7 @@ LAYERS = """
     laws rocks confinement boundaries starts quasi_static time_step consistency spec traversal grid state sorting
     stencil crack_stress material wall_nodes node_update kernels smoothing tracking margin measure leaving stepper
     observe readout drive nominal cracks parting summary output fracture checkpoint record paint frames gallery writer
-    library result run_folder stopping kernel_cache run writer_process scene verify stress study bench
+    library result run_folder stopping kernel_cache compiling run writer_process scene verify stress study bench
 """.split()
 """A module imports only from modules to the left of its own name."""
 
