@@ -8,7 +8,6 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.special import log_ndtr
 
 from rsmpm_ti.errors import refuse
 from rsmpm_ti.kinds import check_kinds, check_seed
@@ -78,6 +77,8 @@ class Weibull:
 
     def factors(self, x: np.ndarray, volume: np.ndarray) -> np.ndarray:
         """Strength factor k of each particle, [n].  x: initial positions [m], [n, dim]; volume [m^dim], [n]."""
+        from scipy.special import log_ndtr
+
         g = self._gaussian(x)
         # -ln(1 - Phi(g)) = -ln Phi(-g), which is exact far into both tails: never 0, never infinite
         return (-log_ndtr(-g) * self.reference_volume / self.weakest_of(volume, x.shape[1])) ** (1.0 / self.shape)

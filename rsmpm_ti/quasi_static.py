@@ -31,7 +31,6 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.optimize import brentq
 
 from rsmpm_ti.errors import SceneError
 from rsmpm_ti.regions import Box, Difference, Disc, Slit, slits_of
@@ -62,7 +61,7 @@ class Estimate:
     def _share(self) -> float:
         """Share of a ramp that is over at that strain: e'T (s^3 - s^4/2) is the strain of a smooth step."""
         reached = self.strain / (self.strain_rate * self.start.time)
-        return 1.0 if reached >= 0.5 else brentq(lambda s: s**3 - 0.5 * s**4 - reached, 0.0, 1.0)
+        return 1.0 if reached >= 0.5 else _root(lambda s: s**3 - 0.5 * s**4 - reached, 0.0, 1.0)
 
     def error(self, time_scale: float) -> float:
         """Estimated share of the load at first failure that is inertia's; grows with time_scale."""
@@ -89,7 +88,13 @@ class Estimate:
             return 1.0
         if self.error(most) <= tolerance:
             return most
-        return brentq(lambda k: self.error(k) - tolerance, 1.0, most)
+        return _root(lambda k: self.error(k) - tolerance, 1.0, most)
+
+
+def _root(function, low: float, high: float) -> float:
+    from scipy.optimize import brentq  # a third of a second, which a run with a time_scale of its own need not wait for
+
+    return brentq(function, low, high)
 
 
 def estimate(scene) -> Estimate:
