@@ -40,15 +40,20 @@ def flight(outside: str, grid: str = "dense", t_end: float = 6e-5) -> Scene:
     )
 
 
+def started(scene: Scene) -> tuple[Drive, np.ndarray, np.ndarray]:
+    """A drive, and places and velocities of its particles in the order of their ids."""
+    drive = Drive(scene, scene.particles(), ti.f64)
+    particles = drive.sim.particles
+    order = np.argsort(particles.id.to_numpy())
+    return drive, particles.reference.to_numpy()[order], particles.v.to_numpy()[order]
+
+
 @pytest.mark.parametrize("threads", [1, pytest.param(2, marks=pytest.mark.validation)])
 def test_what_flies_off_is_dropped_and_the_rest_flies_on(restart_taichi, threads):
     restart_taichi(ti.f64, threads)
     scene = flight("drop")
-    drive = Drive(scene, scene.particles(), ti.f64)
+    drive, x, v = started(scene)
     particles, start = drive.sim.particles, drive.survey
-    x, v = np.empty((2, particles.count, 2))
-    ids = particles.id.to_numpy()
-    x[ids], v[ids] = particles.reference.to_numpy(), particles.v.to_numpy()
     while not drive.clock.done:
         drive.advance(10)
         now = drive.survey
@@ -103,11 +108,8 @@ def test_the_domain_grows_to_where_particles_fly(restart_taichi):
     """Four domain lengths on every side, on a sparse grid: a straight line, no stress; and beyond them the run ends."""
     restart_taichi(ti.f64, 1)
     scene = flight("grow", grid="sparse", t_end=3e-4)
-    drive = Drive(scene, scene.particles(), ti.f64)
+    drive, x, v = started(scene)
     particles, start = drive.sim.particles, drive.survey
-    x, v = np.empty((2, particles.count, 2))
-    ids = particles.id.to_numpy()
-    x[ids], v[ids] = particles.reference.to_numpy(), particles.v.to_numpy()
     while not drive.clock.done:
         drive.advance(500)
         guard(drive.sim, drive.clock, drive.survey)
