@@ -53,7 +53,7 @@ def test_what_flies_off_is_dropped_and_the_rest_flies_on(restart_taichi, threads
     restart_taichi(ti.f64, threads)
     scene = flight("drop")
     drive, x, v = started(scene)
-    particles, start = drive.sim.particles, drive.survey
+    start = drive.survey
     while not drive.clock.done:
         drive.advance(10)
         now = drive.survey
