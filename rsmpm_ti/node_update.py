@@ -11,6 +11,11 @@ A particle that reaches a share r of a cell into a node's support gives it r^2/2
 gradient of r there: a node that was dropped at 1e-12 took 1e-6 of the speed from its velocity gradient.
 """
 
+PUSHED_MASS = 1e-12
+"""With `usl`, nodes lighter than this share of a full cell take no force. What a force of r does to r^2/2 is 1/r, and
+`usl` takes it into the gradient, times r: a node just reached would strain its particle as much as any other.
+"""
+
 
 @ti.func
 def clear_node(sim: ti.template(), i):
@@ -97,7 +102,9 @@ def update_node(sim: ti.template(), i, divide: ti.template(), dt, factor):
         inverse, v_old = 1.0 / m, nodes.v[i]
         if ti.static(divide):
             v_old *= inverse
-        v = v_old + dt * inverse * nodes.f[i]
+        v = v_old
+        if ti.static(sim.scene.order != "usl") or m > PUSHED_MASS * sim.density * sim.grid.dx**sim.dim:
+            v += dt * inverse * nodes.f[i]
         if ti.static(sim.heavy):
             v += dt * ti.Vector(sim.acceleration)
         for b, boundary in ti.static(enumerate(sim.boundaries)):

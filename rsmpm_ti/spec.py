@@ -25,7 +25,7 @@ from rsmpm_ti.starts import Affine, AtRest, Press, Ramp
 from rsmpm_ti.time_step import LEAST_CFL, MOST, check_step
 from rsmpm_ti.transfer import Apic, PicFlip
 
-MOST_BOUNDARIES, MOST_BODIES = 32, 1000
+MOST_BOUNDARIES, MOST_BODIES = 32, 5000
 
 FINEST = 1e-9
 """Smallest cell [m]: below it rock is no continuum."""

@@ -9,6 +9,7 @@ from rsmpm_ti.verify.__main__ import main
 from rsmpm_ti.verify.case import Row, at_least, at_most, difference, relative, seen
 from rsmpm_ti.verify.catalogue import CASES, MODULES
 from rsmpm_ti.verify.running import run_case
+from rsmpm_ti.verify.weibull import strips
 
 LONGER = {"manufactured_b", "uniaxial"}
 """Cases of the quick tier that the suite leaves to its own longer tier: a minute, and `manufactured_a` is like the one;
@@ -25,6 +26,11 @@ def test_case_agrees_with_its_reference(name, tmp_path):
     assert rows and [row for row in rows if not row.passed] == []
     assert (tmp_path / f"{name}.png").stat().st_size > 10_000
     assert all(len(row.reason) > 3 for row in rows), "every tolerance has its reason beside it"
+
+
+def test_the_scene_of_most_bodies_is_not_refused():
+    """`weibull_size --full`: four hundred strips of every width."""
+    assert len(strips(400).bodies) == 2000
 
 
 def test_names_are_unique_and_fit_the_table():

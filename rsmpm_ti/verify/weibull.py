@@ -57,8 +57,16 @@ class Strips:
         return self.strength * (AREAS[self.size] / REFERENCE) ** (1.0 / MODULUS)
 
 
-def _scene(size: np.ndarray, per_axis: np.ndarray) -> Scene:
-    """Strips between common platens, which the affine start stretches uniformly, their own Poisson part included."""
+def _sizes(each: int) -> tuple[np.ndarray, np.ndarray]:
+    """Index into WIDTHS and particles along an axis of a cell, of each strip: see `strips`."""
+    return np.tile(np.arange(len(WIDTHS)), each), 1 + np.repeat(np.arange(each) % 2, len(WIDTHS))
+
+
+def strips(each: int) -> Scene:
+    """`each` strips of every size, every other one with four particles in a cell, the rest with one, between common
+    platens; the affine start stretches them uniformly, their own Poisson part included.
+    """
+    size, per_axis = _sizes(each)
     width = np.array(WIDTHS)[size]
     left = GAP + np.concatenate([[0], np.cumsum(width + GAP)[:-1]])
     height = HEIGHT * DX
@@ -89,9 +97,8 @@ def _scene(size: np.ndarray, per_axis: np.ndarray) -> Scene:
 
 
 def _pull(each: int) -> Strips:
-    """`each` strips of every size, every other one with four particles in a cell, the rest with one."""
-    size, per_axis = np.tile(np.arange(len(WIDTHS)), each), 1 + np.repeat(np.arange(each) % 2, len(WIDTHS))
-    scene = _scene(size, per_axis)
+    """What becomes of `strips` while they are pulled apart."""
+    (size, per_axis), scene = _sizes(each), strips(each)
     drive = set_up(scene)
     drive.advance(drive.clock.total)
     starts = np.concatenate([[0], np.cumsum(np.array([len(seeds.x) for seeds in scene.particles()]))[:-1]])
@@ -110,8 +117,8 @@ def weibull_size(full: bool) -> Outcome:
     A strip is uniformly stressed until its weakest particle fails, and its own strength is the first failure.
     """
     each = 400 if full else 32
-    strips = _pull(each)
-    means = np.array([strips.strength[strips.size == k].mean() for k in range(len(WIDTHS))])
+    pulled = _pull(each)
+    means = np.array([pulled.strength[pulled.size == k].mean() for k in range(len(WIDTHS))])
     expected = MEAN * (AREAS / REFERENCE) ** (-1.0 / MODULUS)
     step, error = TOP / STEPS, SCATTER / math.sqrt(each)
     why = f"3 standard errors of a mean of {each} strengths, {error:.3g} each"
@@ -123,25 +130,25 @@ def weibull_size(full: bool) -> Outcome:
     spread = math.sqrt(np.sum((np.log(AREAS) - np.log(AREAS).mean()) ** 2))
     why = "3 standard errors of the slope through means with that error"
     rows.append(difference("slope of log strength over log area", -1.0 / MODULUS, slope, 3.0 * error / spread, why))
-    scaled = strips.scaled
-    fine, coarse = (scaled[strips.per_axis == n].mean() for n in (2, 1))
+    scaled = pulled.scaled
+    fine, coarse = (scaled[pulled.per_axis == n].mean() for n in (2, 1))
     why = "3 standard errors of the ratio of two means: particles of a quarter of the size change nothing"
     tolerance = 3.0 * SCATTER * math.sqrt(4.0 / len(scaled))
     rows.append(relative("4 particles in a cell over 1, mean strength", coarse, fine, tolerance, why))
     why = "critical value of the Kolmogorov-Smirnov statistic at 1 %, 1.63/sqrt(n)"
     distance = kstest(scaled, weibull_min(MODULUS).cdf).statistic
     rows.append(at_most("distance of scaled strengths from Weibull", distance, 1.63 / math.sqrt(len(scaled)), why))
-    late = np.abs(strips.strength - strips.weakest).max()
+    late = np.abs(pulled.strength - pulled.weakest).max()
     why = "failure is found at the end of a step, and the field is uniform to the second order of a strain of 2.5e-4"
     rows.append(at_most("strip against its weakest particle / sigma_t", late, 1.05 * step, why))
 
     def draw(figure):
         axes, mpa = figure.subplots(), 1e-6 * TENSILE
-        shift = 1.0 + 0.03 * (strips.per_axis - 1.5)  # the two particle sizes side by side
+        shift = 1.0 + 0.03 * (pulled.per_axis - 1.5)  # the two particle sizes side by side
         for n in (1, 2):
-            own = strips.per_axis == n
+            own = pulled.per_axis == n
             label = f"strips, {n * n} particle{'s' if n > 1 else ''} in a cell"
-            place, strength = 1e6 * (AREAS[strips.size] * shift)[own], mpa * strips.strength[own]
+            place, strength = 1e6 * (AREAS[pulled.size] * shift)[own], mpa * pulled.strength[own]
             axes.plot(place, strength, ".", markersize=3, alpha=0.5, color=f"C{n - 1}", label=label)
         axes.errorbar(1e6 * AREAS, mpa * means, 3.0 * error * mpa * means, fmt="ko", capsize=4, label="mean, 3 errors")
         axes.plot(1e6 * AREAS, mpa * expected, "k--", label="Weibull, mean")
