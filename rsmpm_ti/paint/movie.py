@@ -70,7 +70,7 @@ class Movie:
         self.path.parent.mkdir(parents=True, exist_ok=True)
         width, height = movie_size(self._shape[1], self._shape[0])
         # Players guess the colour matrix of an untagged stream, so it is both converted to and tagged as bt709.
-        # bicubic: 30 of the 74 ms that a frame takes with Lanczos are saved, and nobody sees it at 3/4 of the size.
+        # bicubic: a frame takes 44 ms in place of 74 with Lanczos; lines and numbers stay sharp at 3/4 of the size
         scale = f"scale={width}:{height}:flags=bicubic:out_color_matrix=bt709:out_range=tv"
         return self._open(
             self._part,
