@@ -8,7 +8,7 @@ PYTHONS = $(if $(PYTHON),$(PYTHON),python3.13 python3.12 python3.11 python3.10 p
 STAMP   = $(VENV)/.installed$(if $(PYTHON),-$(notdir $(PYTHON)))
 SUITED  = import sys; sys.exit(not (3, 10) <= sys.version_info[:2] <= (3, 13))
 
-.PHONY: help cube disc intact test lint validation verify stress study clean
+.PHONY: help cube disc intact test lint validation verify hardcases study clean
 
 help:
 	@echo 'make cube        slit cube in uniaxial compression    -> renders/cube/'
@@ -18,7 +18,7 @@ help:
 	@echo 'make lint        ruff check, ruff format --check'
 	@echo 'make validation  the longer tier of tests'
 	@echo 'make verify      the solver against exact solutions and finite elements; ARGS=--full for all of it'
-	@echo 'make stress      hard cases and their verdicts; ARGS=--full for all of it'
+	@echo 'make hardcases   hard cases and their verdicts; ARGS=--full for all of it'
 	@echo 'make study       families of runs against theory; ARGS=NAME, or --list'
 	@echo 'make clean       remove .venv, build products and caches; renders/ stays'
 	@echo
@@ -38,8 +38,8 @@ validation: $(STAMP)
 verify: $(STAMP)
 	$(RUN) -m rsmpm_ti.verify $(ARGS)
 
-stress: $(STAMP)
-	$(RUN) -m rsmpm_ti.stress $(ARGS)
+hardcases: $(STAMP)
+	$(RUN) -m rsmpm_ti.hardcases $(ARGS)
 
 study: $(STAMP)
 	$(RUN) -m rsmpm_ti.study $(ARGS)

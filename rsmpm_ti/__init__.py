@@ -1,27 +1,40 @@
 """rsmpm_ti: a rock-fracture laboratory, the material point method on Taichi.
 
-`load_scene(name, **overrides)` builds a `Scene`; `simulate(scene, out=...)` runs it and returns a `Result`.
-Both are loaded on first use, so `import rsmpm_ti` alone pulls in neither Taichi nor a painter.
+`load_scene(name, **overrides)` builds a `Scene`; `simulate(scene, out=...)` runs it and returns a `Result`. Every
+public name is imported from here, `from rsmpm_ti import Scene, Body, Box, MPa`; `__init__.pyi` lists them. They are
+loaded on first use, so `import rsmpm_ti` alone pulls in neither Taichi nor a painter.
 """
 
 import os
+import sys
+from importlib.util import find_spec
 
+__version__ = "0.1.0"
+
+NEEDED = ("taichi", "numpy", "scipy", "matplotlib", "cmcrameri", "PIL", "fpng", "meshio", "rich", "lazy_loader")
+"""Modules without which no command works; they are those of pyproject.toml but for the movie's."""
+
+
+def _say_what_is_missing() -> None:
+    """Raise ImportError, or end a command by one line, where a package that everything needs is not installed."""
+    missing = [name for name in NEEDED if find_spec(name) is None]
+    if missing:
+        line = (
+            f"rsmpm_ti needs {', '.join(missing)}, which {sys.executable} does not have: use .venv/bin/python, which "
+            f"`make` builds in a checkout, or `pip install rsmpm_ti`"
+        )
+        if sys.argv[0] == "-m":  # what `python -m rsmpm_ti...` has there while it looks for the module
+            print(line, file=sys.stderr)
+            raise SystemExit(2)
+        raise ImportError(line)
+
+
+_say_what_is_missing()
 # Taichi greets on standard output when it is imported; a command's output should hold only its own words
 os.environ.setdefault("ENABLE_TAICHI_HEADER_PRINT", "0")
 # and without a home, as under cron or a service manager, it ends the process by a signal
 os.environ.setdefault("HOME", os.path.expanduser("~"))
 
-__version__ = "0.1.0"
-__all__ = ["__version__", "load_scene", "simulate"]
+import lazy_loader  # noqa: E402  (known to be there only now)
 
-
-def __getattr__(name: str):
-    if name == "load_scene":
-        from rsmpm_ti.library import load_scene
-
-        return load_scene
-    if name == "simulate":
-        from rsmpm_ti.run import simulate
-
-        return simulate
-    raise AttributeError(f"module 'rsmpm_ti' has no attribute {name!r}")
+__getattr__, __dir__, __all__ = lazy_loader.attach_stub(__name__, __file__)

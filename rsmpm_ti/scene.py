@@ -5,11 +5,11 @@ import sys
 from dataclasses import replace
 from pathlib import Path
 
-from rsmpm_ti.consistency import BYTES_PER_NODE, BYTES_PER_PARTICLE
 from rsmpm_ti.errors import SceneError, UnstableRun, shown
-from rsmpm_ti.library import available, find, keywords_of, load_scene, scene_name
-from rsmpm_ti.quasi_static import estimate
-from rsmpm_ti.spec import Scene
+from rsmpm_ti.spec.loader import available, find, keywords_of, load_scene, scene_name
+from rsmpm_ti.spec.mass_scaling import estimate
+from rsmpm_ti.spec.scene import Scene
+from rsmpm_ti.spec.scene_checks import BYTES_PER_NODE, BYTES_PER_PARTICLE
 
 QUICK_FRAMES, QUICK_ROWS = 10, 250
 """Frames and history rows of a --quick run: painting and looking would otherwise take longer than solving."""
@@ -141,7 +141,7 @@ def run(scene: Scene, options: argparse.Namespace) -> int:
     from rich.console import Console
     from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn, TimeRemainingColumn
 
-    from rsmpm_ti.run import simulate
+    from rsmpm_ti.run.run import simulate
 
     name = scene_name(options.scene)
     out = Path(options.out) if options.out else Path("renders") / name

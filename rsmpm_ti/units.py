@@ -3,5 +3,7 @@
 GPa = 1e9
 MPa = 1e6
 kPa = 1e3
+cm = 1e-2
 mm = 1e-3
 ms = 1e-3
+us = 1e-6

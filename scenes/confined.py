@@ -4,12 +4,22 @@ Pressure keeps tension cracks shut, and splitting gives way to faulting: Horii &
 Soc. A 319:337.
 """
 
-from rsmpm_ti.boundaries import Platen
-from rsmpm_ti.regions import Box, Difference, Slit
-from rsmpm_ti.rocks import lab_rock
-from rsmpm_ti.seeding import Jittered
-from rsmpm_ti.spec import Affine, Body, Domain, Loading, Scene, Schedule
-from rsmpm_ti.units import MPa, mm
+from rsmpm_ti import (
+    Affine,
+    Body,
+    Box,
+    Difference,
+    Domain,
+    Jittered,
+    Loading,
+    MPa,
+    Platen,
+    Scene,
+    Schedule,
+    Slit,
+    lab_rock,
+    mm,
+)
 
 QUICK = {"dx": 1.0 * mm}
 

@@ -1,11 +1,24 @@
 """The paper's first example: a 50 x 100 mm specimen with an inclined flaw under uniaxial compression (sec. 4.1)."""
 
-from rsmpm_ti.boundaries import Platen
-from rsmpm_ti.laws import Hooke, MohrCoulomb, Rock
-from rsmpm_ti.regions import Box, Difference, Slit
-from rsmpm_ti.seeding import Jittered
-from rsmpm_ti.spec import Affine, Body, Domain, Loading, Scene, Schedule
-from rsmpm_ti.units import GPa, MPa, mm
+from rsmpm_ti import (
+    Affine,
+    Body,
+    Box,
+    Difference,
+    Domain,
+    GPa,
+    Hooke,
+    Jittered,
+    Loading,
+    MohrCoulomb,
+    MPa,
+    Platen,
+    Rock,
+    Scene,
+    Schedule,
+    Slit,
+    mm,
+)
 
 QUICK = {"dx": 1.0 * mm, "flaw_width": 3.0 * mm, "time_scale": 16.0}
 

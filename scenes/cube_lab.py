@@ -1,15 +1,26 @@
 """The slit cube with rock that cracks as rock does: directional cracks, friction, fracture energy, a material length.
 
 Wing cracks in tension come first, then shear cracks from the flaw's ends at the peak. The rock and where its numbers
-come from: `rsmpm_ti/rocks.py`.
+come from: `rsmpm_ti/rock/presets.py`.
 """
 
-from rsmpm_ti.boundaries import Platen
-from rsmpm_ti.regions import Box, Difference, Slit
-from rsmpm_ti.rocks import lab_rock
-from rsmpm_ti.seeding import Jittered
-from rsmpm_ti.spec import Affine, Body, Domain, Loading, Output, Scene, Schedule
-from rsmpm_ti.units import MPa, mm
+from rsmpm_ti import (
+    Affine,
+    Body,
+    Box,
+    Difference,
+    Domain,
+    Jittered,
+    Loading,
+    MPa,
+    Output,
+    Platen,
+    Scene,
+    Schedule,
+    Slit,
+    lab_rock,
+    mm,
+)
 
 QUICK = {"dx": 1.0 * mm}
 

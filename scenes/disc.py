@@ -2,13 +2,27 @@
 
 import math
 
-from rsmpm_ti.boundaries import Platen
-from rsmpm_ti.laws import Hooke, MohrCoulomb, Rock
-from rsmpm_ti.regions import Difference, Disc, Slit
-from rsmpm_ti.seeding import Jittered
-from rsmpm_ti.shape import Gimp
-from rsmpm_ti.spec import Body, Domain, Loading, Ramp, Scene, Schedule
-from rsmpm_ti.units import GPa, MPa, mm, ms
+from rsmpm_ti import (
+    Body,
+    Difference,
+    Disc,
+    Domain,
+    Gimp,
+    GPa,
+    Hooke,
+    Jittered,
+    Loading,
+    MohrCoulomb,
+    MPa,
+    Platen,
+    Ramp,
+    Rock,
+    Scene,
+    Schedule,
+    Slit,
+    mm,
+    ms,
+)
 
 QUICK = {"dx": 1.0 * mm, "flaw_width": 2.0 * mm, "time_scale": 16.0}
 

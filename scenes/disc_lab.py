@@ -2,12 +2,24 @@
 
 import math
 
-from rsmpm_ti.boundaries import Platen
-from rsmpm_ti.regions import Difference, Disc, Slit
-from rsmpm_ti.rocks import lab_rock
-from rsmpm_ti.seeding import Jittered
-from rsmpm_ti.spec import Body, Domain, Loading, Output, Ramp, Scene, Schedule
-from rsmpm_ti.units import MPa, mm, ms
+from rsmpm_ti import (
+    Body,
+    Difference,
+    Disc,
+    Domain,
+    Jittered,
+    Loading,
+    MPa,
+    Output,
+    Platen,
+    Ramp,
+    Scene,
+    Schedule,
+    Slit,
+    lab_rock,
+    mm,
+    ms,
+)
 
 QUICK = {"dx": 1.0 * mm}
 

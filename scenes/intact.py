@@ -1,11 +1,22 @@
 """The cube without a flaw: the uniform state whose modulus and strength are known exactly."""
 
-from rsmpm_ti.boundaries import Platen
-from rsmpm_ti.laws import Hooke, MohrCoulomb, Rock
-from rsmpm_ti.regions import Box
-from rsmpm_ti.seeding import Lattice
-from rsmpm_ti.spec import Affine, Body, Domain, Loading, Scene, Schedule
-from rsmpm_ti.units import GPa, MPa, mm
+from rsmpm_ti import (
+    Affine,
+    Body,
+    Box,
+    Domain,
+    GPa,
+    Hooke,
+    Lattice,
+    Loading,
+    MohrCoulomb,
+    MPa,
+    Platen,
+    Rock,
+    Scene,
+    Schedule,
+    mm,
+)
 
 QUICK = {"dx": 1.0 * mm}
 

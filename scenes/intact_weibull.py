@@ -3,13 +3,7 @@
 import math
 from dataclasses import replace
 
-from rsmpm_ti.boundaries import Platen
-from rsmpm_ti.heterogeneity import Weibull
-from rsmpm_ti.regions import Box
-from rsmpm_ti.rocks import lab_rock
-from rsmpm_ti.seeding import Jittered
-from rsmpm_ti.spec import Affine, Body, Domain, Loading, Scene, Schedule
-from rsmpm_ti.units import mm
+from rsmpm_ti import Affine, Body, Box, Domain, Jittered, Loading, Platen, Scene, Schedule, Weibull, lab_rock, mm
 
 QUICK = {"dx": 1.0 * mm, "time_scale": 20.0}
 

@@ -7,12 +7,23 @@ line of the other; 90: the inner tips face each other; more: the flaws overlap; 
 
 import math
 
-from rsmpm_ti.boundaries import Platen
-from rsmpm_ti.regions import Box, Difference, Slit
-from rsmpm_ti.rocks import lab_rock
-from rsmpm_ti.seeding import Jittered
-from rsmpm_ti.spec import Affine, Body, Domain, Loading, Output, Scene, Schedule
-from rsmpm_ti.units import MPa, mm
+from rsmpm_ti import (
+    Affine,
+    Body,
+    Box,
+    Difference,
+    Domain,
+    Jittered,
+    Loading,
+    MPa,
+    Output,
+    Platen,
+    Scene,
+    Schedule,
+    Slit,
+    lab_rock,
+    mm,
+)
 
 QUICK = {"dx": 1.0 * mm}
 

@@ -3,7 +3,7 @@
 import pytest
 import taichi as ti
 
-from rsmpm_ti.compiling import hasten_compiling
+from rsmpm_ti.backend.taichi_patches import hasten_compiling
 
 
 def start(real, threads: int = 2) -> None:

@@ -1,10 +1,12 @@
 """What unit tests share: every variant of a strategy, found in its module, and Taichi functions on NumPy rows."""
 
 import dataclasses
-import inspect
+import typing
 
 import numpy as np
 import taichi as ti
+
+from rsmpm_ti.checks import members
 
 REQUIRED = {
     "Hooke": {"E": 17e9, "nu": 0.14},
@@ -14,9 +16,8 @@ REQUIRED = {
     "Platen": {"axis": 0, "side": "lower", "position": 0.0, "speed": 1.0},
     "Wall": {"axis": 0, "side": "lower", "position": 0.0},
     "Fixed": {"axis": 0, "side": "lower", "position": 0.0},
-    "Rock": None,  # made of the others
 }
-"""Example arguments of classes that cannot be built without any, or not well; None leaves a class out."""
+"""Example arguments of classes that cannot be built without any, or not well."""
 
 
 def build(kind: type):
@@ -32,12 +33,11 @@ def build(kind: type):
     return kind(**REQUIRED.get(kind.__name__, {}))
 
 
-def variants(module, attribute: str) -> list:
-    """An example of every dataclass that a module defines and that has an attribute: the variants of one strategy."""
-    kinds = [k for _, k in inspect.getmembers(module, dataclasses.is_dataclass) if k.__module__ == module.__name__]
-    found = [build(k) for k in kinds if hasattr(k, attribute) and REQUIRED.get(k.__name__, {}) is not None]
-    assert found, f"{module.__name__} has no class with {attribute}"
-    return found
+def variants(owner: type, field: str) -> list:
+    """An example of every class that a field of scene data may hold, by its annotation."""
+    kinds = [k for k in members(typing.get_type_hints(owner)[field]) if dataclasses.is_dataclass(k)]
+    assert kinds, f"{owner.__name__}.{field} holds no strategy"
+    return [build(kind) for kind in kinds]
 
 
 def name_of(value) -> str:

@@ -5,10 +5,10 @@ from types import SimpleNamespace
 import numpy as np
 from exact import lame, shape_function
 
-from rsmpm_ti.grid import MARGIN
-from rsmpm_ti.spec import Scene
-from rsmpm_ti.state import Simulation
-from rsmpm_ti.transfer import Apic, PicFlip
+from rsmpm_ti.fields.grid import MARGIN
+from rsmpm_ti.fields.state import Simulation
+from rsmpm_ti.method.transfer import Apic, PicFlip
+from rsmpm_ti.spec.scene import Scene
 
 PLACES = ((0, 0), (1, 1), (2, 2), (0, 1), (1, 2), (2, 0))
 

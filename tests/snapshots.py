@@ -4,7 +4,7 @@ import dataclasses
 
 import numpy as np
 
-from rsmpm_ti.snapshot import Snapshot
+from rsmpm_ti.records.snapshot import Snapshot
 
 
 def snapshot_of(x: np.ndarray, mode=None, **fields) -> Snapshot:

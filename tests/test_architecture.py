@@ -4,60 +4,36 @@ import ast
 import re
 import subprocess
 import sys
+from graphlib import TopologicalSorter
 from pathlib import Path
 
 import pytest
 
+from rsmpm_ti.spec.scene_json import KNOWN
+
 ROOT = Path(__file__).resolve().parent.parent
 PACKAGE = ROOT / "rsmpm_ti"
 
-LAYERS = """
-    errors units snapshot kinds tensors regions seeding heterogeneity shape transfer averaging softening directional
-    laws rocks confinement boundaries starts quasi_static time_step consistency spec traversal grid state sorting
-    stencil crack_stress material wall_nodes node_update kernels smoothing tracking margin measure leaving stepper
-    observe readout drive nominal cracks parting summary output fracture checkpoint record paint frames gallery writer
-    library result run_folder stopping kernel_cache compiling run writer_process scene verify stress study bench
+ROOMS = """
+    errors units checks records backend rock method spec fields analysis failure mpm solver paint output run cases
+    verify hardcases study bench scene
 """.split()
-"""A module imports only from modules to the left of its own name."""
+"""Ground floor first: a module imports only from rooms to the left of its own, and within its room in no circle."""
 
-CRACK_LAYERS = "path wings tips growth aperture bands fragments emission".split()
-PAINT_LAYERS = "view layout chrome raster ggui kinds png figure summary movie".split()
-"""The same within `rsmpm_ti/paint/`, which sees nothing else of the package than PAINT_SEES."""
+PAINT_SEES = {"errors", "units", "records", "paint"}
+"""Pictures are made of records alone, so that whoever has a run's files can paint it."""
 
-VERIFY_LAYERS = """
-    case drives fe_field meshing finite_elements closed_forms exact_motion bodies relaxation waves manufactured specimen
-    triaxial cell material_point crack_forms crack_paths cracked_cell envelope disc hole slit_field first_failure
-    weibull catalogue report running command __main__
-""".split()
-STRESS_LAYERS = (
-    "pieces steps crossing elastic motion labels impact failing invariance restart catalogue __main__".split()
-)
-STUDY_LAYERS = """
-    runs flaw_cracks turned grid_independence fracture_energy shear_band gmts mean_stress flaw_angle catalogue __main__
-""".split()
-BENCH_LAYERS = "settings yardstick workers speed passes scaling start runs measures front error __main__".split()
-"""The same within the packages cracks, verify, stress, study and bench, which see every layer above their own name."""
-
-ROOMS = {
-    "cracks": CRACK_LAYERS,
-    "paint": PAINT_LAYERS,
-    "verify": VERIFY_LAYERS,
-    "stress": STRESS_LAYERS,
-    "study": STUDY_LAYERS,
-    "bench": BENCH_LAYERS,
-}
-
-PAINT_SEES = {"errors", "units", "snapshot"}
 WITHOUT_TAICHI = (
-    """
-    errors units snapshot regions seeding heterogeneity output nominal cracks
-""".split()
-    + [f"cracks.{name}" for name in CRACK_LAYERS]
-)
-STRATEGY_FILES = ["heterogeneity", "shape", "transfer", "laws", "boundaries", "averaging", "softening", "directional"]
-MAY_INIT = {"rsmpm_ti/run.py", "tests/conftest.py"}
+    "errors units checks records spec.regions spec.seeding spec.slit_check rock.heterogeneity output.files analysis"
+).split()
+"""Modules and rooms that are read where Taichi is not started, or is not there."""
+
+SCENE_DATA = ("rock", "method", "spec")
+"""Rooms of what a scene is made of: frozen strategies."""
+
+MAY_INIT = {"rsmpm_ti/backend/start.py", "tests/conftest.py"}
 VAGUE = {"util", "utils", "helper", "helpers", "manager", "managers", "engine", "engines"}
-MOST_LINES = 350
+MOST_LINES, MOST_FILES = 350, 12
 
 PACKAGE_FILES = sorted(PACKAGE.rglob("*.py"))
 ALL_FILES = [path for folder in ("rsmpm_ti", "scenes", "tests") for path in sorted((ROOT / folder).rglob("*.py"))]
@@ -77,6 +53,21 @@ def dotted(path: Path) -> str:
 
 
 MODULES = {dotted(path): path for path in PACKAGE_FILES}
+
+
+def made_in(path: Path) -> set[str]:
+    """Names that a file defines at its top level."""
+    found = set()
+    for node in parse(path).body:
+        if isinstance(node, (ast.FunctionDef, ast.ClassDef)):
+            found.add(node.name)
+        elif isinstance(node, (ast.Assign, ast.AnnAssign)):
+            targets = node.targets if isinstance(node, ast.Assign) else [node.target]
+            found |= {n.id for target in targets for n in ast.walk(target) if isinstance(n, ast.Name)}
+    return found
+
+
+DEFINED = {module: made_in(path) for module, path in MODULES.items()}
 
 
 def each(paths):
@@ -101,39 +92,22 @@ def imported_names(path: Path) -> list[tuple[int, str]]:
 
 
 def own_module(name: str) -> str | None:
-    """The module of this package that a dotted import loads; None for other packages and for the version."""
-    if name.split(".")[0] != "rsmpm_ti" or name == "rsmpm_ti.__version__":
+    """The module of this package that a dotted import loads; None for other packages, the version and the door."""
+    if name.split(".")[0] != "rsmpm_ti":
         return None
-    while name not in MODULES and name.partition(".")[2] not in LAYERS:
+    while name not in MODULES:
         name = name.rpartition(".")[0]
-    return name
+    return None if name == "rsmpm_ti" else name
 
 
-def allowed_imports(module: str) -> set[str]:
-    """Names, without the leading "rsmpm_ti.", that a listed module may import from this package."""
-    crackers = [f"cracks.{name}" for name in CRACK_LAYERS]
-    painters = [f"paint.{name}" for name in PAINT_LAYERS]
-    verifiers = [f"verify.{name}" for name in VERIFY_LAYERS]
-    stresses = [f"stress.{name}" for name in STRESS_LAYERS]
-    benches = [f"bench.{name}" for name in BENCH_LAYERS]
-    studies = [f"study.{name}" for name in STUDY_LAYERS]
-    if module == "":  # rsmpm_ti/__init__.py hands out the surface
-        return {"library", "run"}
-    if module == "paint":
-        return PAINT_SEES | set(painters)
-    if module in painters:
-        return PAINT_SEES | set(painters[: painters.index(module)])
-    above = set(LAYERS[: LAYERS.index(module.partition(".")[0])])
-    if "cracks" in above:
-        above |= set(crackers)
-    if "paint" in above:
-        above |= set(painters)
-    if "verify" in above:
-        above |= set(verifiers)
-    for rooms in (crackers, verifiers, stresses, studies, benches):
-        if module in rooms:
-            above |= set(rooms[: rooms.index(module)]) | {""}
-    return above
+def room(module: str) -> str:
+    """ "rsmpm_ti.spec.scene" -> "spec"."""
+    return module.split(".")[1]
+
+
+def imports_of(path: Path) -> set[str]:
+    """Own modules that a file imports, but for itself and its rooms."""
+    return {own for _, name in imported_names(path) if (own := own_module(name)) and own != dotted(path)}
 
 
 def test_every_package_is_installed():
@@ -143,34 +117,46 @@ def test_every_package_is_installed():
     assert set(re.findall(r'"([\w.]+)"', listed[1])) == packages | {"rsmpm_ti.scenes"}
 
 
-@each(PACKAGE_FILES)
-def test_module_imports_only_from_layers_above(path):
-    module = dotted(path).partition(".")[2]
-    package, _, name = module.partition(".")
-    if name:
-        assert name in ROOMS[package], (
-            f"{relative(path)} is in no layer: add it to {package.upper()}_LAYERS in {relative(Path(__file__))}, to "
-            "the right of every module it imports and to the left of every module that imports it"
-        )
-    elif module:
-        assert module in LAYERS, (
-            f"{relative(path)} is in no layer: add {module!r} to LAYERS in {relative(Path(__file__))} (and to the list "
-            "in the design), to the right of every module it imports and to the left of every module that imports it"
-        )
-    allowed = allowed_imports(module)
+def test_top_level_holds_the_words_and_the_commands_alone():
+    modules = {path.stem for path in PACKAGE.glob("*.py")}
+    assert modules == {"__init__", "__main__", "errors", "units", "checks", "scene"}
+
+
+def test_every_room_is_in_the_list_and_every_name_of_the_list_a_room():
+    there = {dotted(path).split(".")[1] for path in PACKAGE_FILES if dotted(path).count(".")} - {"__main__"}
+    assert there == set(ROOMS), "add it to ROOMS, to the right of every room it imports from"
+
+
+@each([path for path in PACKAGE_FILES if path.parent != PACKAGE or path.stem in ROOMS])
+def test_module_imports_only_from_rooms_before_its_own(path):
+    own = room(dotted(path))
+    may = PAINT_SEES if own == "paint" else set(ROOMS[: ROOMS.index(own) + 1])
     for line, name in imported_names(path):
         target = own_module(name)
-        assert target is None or target.partition(".")[2] in allowed, (
-            f"{relative(path)}:{line} imports {name}, which is not above it; it may import {sorted(allowed)}"
+        assert target is None or room(target) in may, (
+            f"{relative(path)}:{line} imports {name}, but {own!r} sees only {sorted(may)}"
         )
 
 
-def test_layers_name_no_module_that_is_gone():
-    if "rsmpm_ti.scene" not in MODULES:
-        pytest.skip("the last layer, rsmpm_ti/scene.py, is not written yet")
-    listed = {f"rsmpm_ti.{name}" for name in LAYERS}
-    listed |= {f"rsmpm_ti.{package}.{name}" for package, names in ROOMS.items() for name in names}
-    assert listed - set(MODULES) == set(), "LAYERS or one of ROOMS names modules that do not exist"
+def test_no_module_imports_itself_by_way_of_others():
+    order = TopologicalSorter({module: imports_of(path) for module, path in MODULES.items() if module != "rsmpm_ti"})
+    assert order.static_order()  # raises CycleError, which names the circle
+
+
+@pytest.mark.parametrize("folder", sorted({path.parent for path in PACKAGE_FILES}), ids=relative)
+def test_room_is_small_enough_to_know(folder):
+    files = [path for path in folder.glob("*.py") if path.stem not in ("__init__", "__main__")]
+    assert len(files) <= MOST_FILES, f"{relative(folder)} has {len(files)} modules: open another room"
+
+
+@each([path for path in ALL_FILES if path.parts[-2] != "scenes"])
+def test_name_is_imported_from_where_it_is_made(path):
+    """One path for a name: a module that is moved is then found by its users' imports."""
+    for line, name in imported_names(path):
+        module = own_module(name)
+        thing = name.removeprefix(f"{module}.")
+        if module and thing != module:
+            assert thing in DEFINED[module], f"{relative(path)}:{line}: {thing} is not made in {module}"
 
 
 @each(ALL_FILES)
@@ -209,11 +195,11 @@ def loaded_by(*modules: str) -> dict[str, set[str]]:
 
 
 def test_modules_do_without_taichi():
-    modules = [f"rsmpm_ti.{module}" for module in WITHOUT_TAICHI]
-    assert set(modules) <= set(MODULES)
-    for module, loaded in loaded_by(*modules).items():
-        direct = {name.partition(".")[0] for _, name in imported_names(MODULES[module])}
-        assert "taichi" not in direct | loaded, module
+    """By themselves: their room may hold others that do need it."""
+    modules = [m for m in MODULES if any(f"{m}.".startswith(f"rsmpm_ti.{name}.") for name in WITHOUT_TAICHI)]
+    assert len(modules) >= len(WITHOUT_TAICHI)
+    direct = {m: {name.partition(".")[0] for _, name in imported_names(MODULES[m])} for m in modules}
+    assert [m for m in modules if "taichi" in direct[m]] == []
 
 
 def test_importing_the_package_is_light():
@@ -239,10 +225,10 @@ def classes(path: Path) -> list[ast.ClassDef]:
 
 
 STRATEGIES = [
-    pytest.param(MODULES[f"rsmpm_ti.{file}"], node, id=f"{file}.{node.name}")
-    for file in STRATEGY_FILES
-    if f"rsmpm_ti.{file}" in MODULES
-    for node in classes(MODULES[f"rsmpm_ti.{file}"])
+    pytest.param(path, node, id=f"{dotted(path).removeprefix('rsmpm_ti.')}.{node.name}")
+    for path in PACKAGE_FILES
+    for node in classes(path)
+    if path.parent.name in SCENE_DATA and node.name in KNOWN
 ]
 
 

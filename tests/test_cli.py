@@ -5,11 +5,11 @@ import sys
 
 import pytest
 
-from rsmpm_ti.library import available, keywords_of, load_scene
-from rsmpm_ti.output import write_json
-from rsmpm_ti.record import to_plain
+from rsmpm_ti.output.files import write_json
 from rsmpm_ti.scene import build, main, parser
-from rsmpm_ti.spec import Scene
+from rsmpm_ti.spec.loader import available, keywords_of, load_scene
+from rsmpm_ti.spec.scene import Scene
+from rsmpm_ti.spec.scene_json import to_plain
 
 SHIPPED = sorted(available())
 
@@ -18,7 +18,7 @@ SHIPPED = sorted(available())
 def command(monkeypatch, capsys, tmp_path):
     """run(*arguments) -> (exit status, stdout, stderr), in an empty folder; a run that starts Taichi fails the test."""
     monkeypatch.chdir(tmp_path)
-    monkeypatch.setattr("rsmpm_ti.run.start_taichi", lambda *_: pytest.fail("Taichi was started"))
+    monkeypatch.setattr("rsmpm_ti.run.run.start_taichi", lambda *_: pytest.fail("Taichi was started"))
 
     def run(*arguments: str):
         status = main(list(arguments))

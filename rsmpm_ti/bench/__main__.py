@@ -5,7 +5,7 @@ import os
 import sys
 from pathlib import Path
 
-from rsmpm_ti.bench.settings import CELLS, SHAPES
+from rsmpm_ti.bench.sweep import CELLS, SHAPES
 
 
 def parser() -> argparse.ArgumentParser:
@@ -66,7 +66,7 @@ def _measure(options: argparse.Namespace) -> str:
 
         return memory(tuple(options.scenes))
     if options.what == "start":
-        from rsmpm_ti.bench.start import start
+        from rsmpm_ti.bench.startup import start
 
         return start(options.scene, not options.full, options.threads, options.rounds)
     if options.what == "runs":

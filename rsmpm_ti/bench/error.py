@@ -6,9 +6,9 @@ import os
 from dataclasses import fields
 from pathlib import Path
 
-from rsmpm_ti.bench.front import Entry, pareto, recommendations
 from rsmpm_ti.bench.measures import Measure, measure
-from rsmpm_ti.bench.settings import CELLS, SHAPES, Setting, sweep
+from rsmpm_ti.bench.pareto import Entry, pareto, recommendations
+from rsmpm_ti.bench.sweep import CELLS, SHAPES, Setting, sweep
 
 CSV_NAME, PICTURE_NAME = "speed_vs_error.csv", "speed_vs_error.png"
 NAMES = tuple(f.name for f in fields(Setting))

@@ -7,19 +7,22 @@ from dataclasses import dataclass, replace
 import numpy as np
 import taichi as ti
 
-from rsmpm_ti.bench.settings import TRANSFERS, Setting
-from rsmpm_ti.boundaries import Wall
-from rsmpm_ti.drive import Drive
-from rsmpm_ti.laws import Hooke, NoViscosity, Rock, Unbreakable
-from rsmpm_ti.readout import take_snapshot
-from rsmpm_ti.regions import Box
-from rsmpm_ti.run import start_taichi
-from rsmpm_ti.seeding import Lattice
-from rsmpm_ti.spec import Body, Domain, Loading, Scene, Schedule
-from rsmpm_ti.verify.drives import set_up
-from rsmpm_ti.verify.fe_field import load_field
-from rsmpm_ti.verify.manufactured import vortex_error
-from rsmpm_ti.verify.slit_field import PLANE_STRAIN_MODULUS, field_error, slit_specimen
+from rsmpm_ti.backend.start import start_taichi
+from rsmpm_ti.bench.sweep import TRANSFERS, Setting
+from rsmpm_ti.cases.static_state import set_up
+from rsmpm_ti.rock.criteria import Unbreakable
+from rsmpm_ti.rock.elasticity import Hooke
+from rsmpm_ti.rock.rock import Rock
+from rsmpm_ti.rock.viscosity import NoViscosity
+from rsmpm_ti.solver.advance import Drive
+from rsmpm_ti.solver.readout import take_snapshot
+from rsmpm_ti.spec.boundaries import Wall
+from rsmpm_ti.spec.regions import Box
+from rsmpm_ti.spec.scene import Body, Domain, Loading, Scene, Schedule
+from rsmpm_ti.spec.seeding import Lattice
+from rsmpm_ti.verify.elastic.manufactured import vortex_error
+from rsmpm_ti.verify.elastic.slit_field import PLANE_STRAIN_MODULUS, field_error, slit_specimen
+from rsmpm_ti.verify.reference.fe_field import load_field
 
 STRAIN = 4.5e-5
 """Where the slit specimen is looked at: just below its first failure, 0.75 MPa."""

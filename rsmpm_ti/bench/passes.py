@@ -8,11 +8,11 @@ def passes(shape: str, threads: int, rounds: int) -> str:
     """Median nanoseconds per particle of each part, over rounds in turn; steps of no length, so that nothing moves."""
     import taichi as ti
 
+    from rsmpm_ti.backend.start import start_taichi
     from rsmpm_ti.bench.workers import Runner, simulation
-    from rsmpm_ti.kernels import g2p, musl_step, p2g
-    from rsmpm_ti.node_update import update_nodes
-    from rsmpm_ti.run import start_taichi
-    from rsmpm_ti.stepper import MOVE, MOVE_AND_LOAD, Pass
+    from rsmpm_ti.mpm.nodes import update_nodes
+    from rsmpm_ti.mpm.passes import g2p, musl_step, p2g
+    from rsmpm_ti.mpm.stepper import MOVE, MOVE_AND_LOAD, Pass
 
     real, _ = start_taichi("f64", "cpu", threads)
     drive = simulation(Runner("solver", shape), real)

@@ -46,9 +46,9 @@ def memory(names: tuple[str, ...]) -> str:
 
     Computed from the fields themselves; nodes per particle with four particles to a cell of the scene's body.
     """
-    from rsmpm_ti.library import load_scene
-    from rsmpm_ti.run import start_taichi
-    from rsmpm_ti.state import Simulation
+    from rsmpm_ti.backend.start import start_taichi
+    from rsmpm_ti.fields.state import Simulation
+    from rsmpm_ti.spec.loader import load_scene
 
     lines = [
         f"{'scene':<10}{'particles':>10}{'particle fields':>18}{'events':>10}{'nodes':>10}  bytes per particle, f64"

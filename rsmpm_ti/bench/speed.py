@@ -3,7 +3,7 @@
 import statistics
 from dataclasses import replace
 
-from rsmpm_ti.bench.settings import SHAPES
+from rsmpm_ti.bench.sweep import SHAPES
 from rsmpm_ti.bench.workers import WIDTHS, Runner, workers
 
 FINE = 0.25e-3

@@ -10,7 +10,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from pathlib import Path
 
-from rsmpm_ti.bench.settings import SHAPES
+from rsmpm_ti.bench.sweep import SHAPES
 
 WIDTHS = {"linear": 2, "bspline": 3}
 """Shape functions that the twins know, and their nodes per axis."""
@@ -40,9 +40,9 @@ class Runner:
 
 def simulation(runner: Runner, real):
     """The intact cube in its elastic phase, failure check on, lattice: a Drive that has been sorted."""
-    from rsmpm_ti.drive import Drive
-    from rsmpm_ti.library import load_scene
-    from rsmpm_ti.seeding import Lattice
+    from rsmpm_ti.solver.advance import Drive
+    from rsmpm_ti.spec.loader import load_scene
+    from rsmpm_ti.spec.seeding import Lattice
 
     scene = load_scene("intact", time_scale=1.0, strain_end=1.5e-3, dx=runner.dx)
     bodies = (replace(scene.bodies[0], seeding=Lattice()),)
@@ -53,8 +53,8 @@ def simulation(runner: Runner, real):
 def _serve(pipe, precision: str, threads: int) -> None:
     import taichi as ti
 
-    from rsmpm_ti.bench.yardstick import Naive
-    from rsmpm_ti.run import start_taichi
+    from rsmpm_ti.backend.start import start_taichi
+    from rsmpm_ti.bench.naive import Naive
 
     real, _ = start_taichi(precision, "cpu", threads)
     ready = {}

@@ -10,12 +10,12 @@ import numpy as np
 from PIL import Image, ImageDraw, ImageFont
 
 from rsmpm_ti.errors import refuse
-from rsmpm_ti.paint.chrome import MEGA, MILLI, draw_chrome
+from rsmpm_ti.paint.frame_axes import MEGA, MILLI, draw_chrome
+from rsmpm_ti.paint.frame_kinds import Look, crack_look, cracking_look, margin_look, stress_look
 from rsmpm_ti.paint.ggui import Ggui, probe
-from rsmpm_ti.paint.kinds import Look, crack_look, cracking_look, margin_look, stress_look
 from rsmpm_ti.paint.layout import TEXT_LINE, Box, lay_out
 from rsmpm_ti.paint.raster import Raster
-from rsmpm_ti.snapshot import SHEAR, TENSION, Snapshot
+from rsmpm_ti.records.snapshot import SHEAR, TENSION, Snapshot
 
 KINDS = ("stress", "cracks", "margin")
 PAINTERS = {"raster": Raster, "ggui": Ggui}

@@ -14,7 +14,7 @@ from pathlib import Path
 import numpy as np
 import taichi as ti
 
-from rsmpm_ti.paint.view import Palette, View, squares_in_view
+from rsmpm_ti.paint.palette import Palette, View, squares_in_view
 
 PROBE = """
 import json, taichi as ti

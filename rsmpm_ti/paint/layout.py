@@ -3,7 +3,7 @@
 from dataclasses import dataclass
 
 from rsmpm_ti.errors import refuse
-from rsmpm_ti.paint.view import View
+from rsmpm_ti.paint.palette import View
 
 LEFT, TOP, BOTTOM = 100, 75, 75
 """Margins around the panel that hold the axes' numbers, the title and the axis label."""

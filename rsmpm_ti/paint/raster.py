@@ -8,7 +8,7 @@ pictures with any number of threads.
 import numpy as np
 import taichi as ti
 
-from rsmpm_ti.paint.view import INFLATE, Palette, View, squares_in_view
+from rsmpm_ti.paint.palette import INFLATE, Palette, View, squares_in_view
 
 UNIT = 1024
 """Fixed-point one, for areas in pixels and for values in limits."""

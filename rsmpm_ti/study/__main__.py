@@ -5,9 +5,9 @@ import os
 import sys
 from pathlib import Path
 
+from rsmpm_ti.cases.report import draw, print_head, print_rows, write_table
 from rsmpm_ti.study.catalogue import STUDIES
 from rsmpm_ti.study.runs import all_kept, run_all
-from rsmpm_ti.verify.report import draw, print_head, print_rows, write_table
 
 
 def parser() -> argparse.ArgumentParser:

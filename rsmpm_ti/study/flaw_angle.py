@@ -13,11 +13,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from rsmpm_ti.cases.case import Outcome, Row, at_least, at_most, difference, relative
 from rsmpm_ti.study import gmts, mean_stress
 from rsmpm_ti.study.flaw_cracks import MIDDLE, WIDTH, Beginning, crack, read_beginning
 from rsmpm_ti.study.mean_stress import ANGLES, HALF, TENSILE
 from rsmpm_ti.study.runs import Run, Study
-from rsmpm_ti.verify.case import Outcome, Row, at_least, at_most, difference, relative
 
 FITTED = 45.0
 HELD = {"cube": (30.0, 45.0, 60.0, 75.0), "disc": (0.0, 15.0, 30.0, 45.0)}

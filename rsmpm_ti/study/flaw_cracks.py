@@ -7,16 +7,17 @@ import taichi as ti
 from scipy.sparse.csgraph import connected_components
 
 from rsmpm_ti import load_scene
-from rsmpm_ti.cracks.path import REACH, neighbour_graph
-from rsmpm_ti.cracks.wings import crack_directions, leaving_angle
-from rsmpm_ti.drive import Drive
+from rsmpm_ti.analysis.crack_path import REACH, neighbour_graph
+from rsmpm_ti.analysis.load_curve import loading_curve
+from rsmpm_ti.analysis.wing_cracks import crack_directions, leaving_angle
 from rsmpm_ti.errors import UnstableRun
-from rsmpm_ti.nominal import loading_curve
-from rsmpm_ti.observe import History, read_events
-from rsmpm_ti.regions import Slit, slits_of
-from rsmpm_ti.seeding import Jittered
-from rsmpm_ti.snapshot import TENSION
-from rsmpm_ti.spec import Scene
+from rsmpm_ti.records.snapshot import TENSION
+from rsmpm_ti.solver.advance import Drive
+from rsmpm_ti.solver.history import History
+from rsmpm_ti.solver.readout import read_events
+from rsmpm_ti.spec.regions import Slit, slits_of
+from rsmpm_ti.spec.scene import Scene
+from rsmpm_ti.spec.seeding import Jittered
 
 WIDTH = 3e-3
 """Width of every flaw [m]."""

@@ -5,14 +5,15 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from rsmpm_ti import load_scene, simulate
-from rsmpm_ti.averaging import Local
-from rsmpm_ti.boundaries import Platen
-from rsmpm_ti.laws import CompressionOnly
-from rsmpm_ti.regions import Box, Difference
-from rsmpm_ti.seeding import Jittered, Lattice
-from rsmpm_ti.spec import Affine, Body, Domain, Loading, Scene, Schedule
+from rsmpm_ti.cases.case import Outcome, at_most, relative
+from rsmpm_ti.rock.after_failure import CompressionOnly
+from rsmpm_ti.rock.nonlocal_mean import Local
+from rsmpm_ti.spec.boundaries import Platen
+from rsmpm_ti.spec.loading_start import Affine
+from rsmpm_ti.spec.regions import Box, Difference
+from rsmpm_ti.spec.scene import Body, Domain, Loading, Scene, Schedule
+from rsmpm_ti.spec.seeding import Jittered, Lattice
 from rsmpm_ti.study.runs import Run, Study
-from rsmpm_ti.verify.case import Outcome, at_most, relative
 
 WIDTH, HEIGHT, NOTCH = 20e-3, 40e-3, 5e-3
 """Notched strip, and depth of each notch [m]; the notches are 3 cells high."""

@@ -10,7 +10,7 @@ import numpy as np
 from scipy.interpolate import CubicSpline
 from scipy.optimize import brentq, minimize_scalar
 
-from rsmpm_ti.verify.closed_forms import cracked_disc
+from rsmpm_ti.verify.elastic.closed_forms import cracked_disc
 
 CUBE_SIF = np.array(
     (

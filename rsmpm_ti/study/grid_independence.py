@@ -5,10 +5,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from rsmpm_ti.regions import Slit
+from rsmpm_ti.cases.case import Outcome, at_least, at_most
+from rsmpm_ti.spec.regions import Slit
+from rsmpm_ti.study.rotated_specimen import ENDS, grow
 from rsmpm_ti.study.runs import Run, Study
-from rsmpm_ti.study.turned import ENDS, grow
-from rsmpm_ti.verify.case import Outcome, at_least, at_most
 
 ANGLES, SEEDS = (0.0, 15.0, 30.0, 45.0), (1, 2, 3)
 PATH = 20e-3

@@ -12,11 +12,11 @@ from pathlib import Path
 import numpy as np
 from scipy.ndimage import gaussian_filter
 
-from rsmpm_ti.cracks.wings import crack_directions
-from rsmpm_ti.output import write_json
-from rsmpm_ti.regions import Slit
-from rsmpm_ti.verify.finite_elements import solve
-from rsmpm_ti.verify.meshing import Disc, Plate, Spacing
+from rsmpm_ti.analysis.wing_cracks import crack_directions
+from rsmpm_ti.output.files import write_json
+from rsmpm_ti.spec.regions import Slit
+from rsmpm_ti.verify.reference.finite_elements import solve
+from rsmpm_ti.verify.reference.meshing import Disc, Plate, Spacing
 
 MESH = Spacing(corner=0.1, end=0.05, face=0.2, load_edge=0.2, far=2.0, growth=0.15, load_growth=0.2)
 """Edge lengths [mm]; halved, with PIXEL, loads change by at most 0.4 % and angles by half a degree."""

@@ -13,9 +13,12 @@ from pathlib import Path
 import numpy as np
 
 from rsmpm_ti import __version__
-from rsmpm_ti.library import available
-from rsmpm_ti.output import complete
-from rsmpm_ti.verify.case import Outcome
+from rsmpm_ti.cases.case import Outcome
+from rsmpm_ti.output.files import complete
+from rsmpm_ti.spec.loader import PACKAGE, available
+
+SOLVER = ("", "records", "rock", "method", "spec", "fields", "analysis", "failure", "mpm", "solver", "run")
+"""Rooms whose code a run's numbers may depend on."""
 
 
 @dataclass(frozen=True)
@@ -44,8 +47,7 @@ def sources(work: Callable) -> str:
 
     So a kept result outlives no change of them: hours are lost by it now and then, but no picture is of another code.
     """
-    package = Path(__file__).resolve().parents[1]
-    solver = [*package.glob("*.py"), *package.glob("cracks/*.py")]
+    solver = [file for room in SOLVER for file in (PACKAGE / room).glob("*.py")]
     digest = hashlib.sha256()
     for file in [Path(inspect.getfile(work)), *sorted(solver), *available().values()]:
         digest.update(file.name.encode() + file.read_bytes())
@@ -69,7 +71,7 @@ def kept(run: Run, folder: Path) -> dict | None:
 
 
 def _work(task: tuple[Run, Path]) -> tuple[str, dict, float]:
-    from rsmpm_ti.run import start_taichi
+    from rsmpm_ti.backend.start import start_taichi
 
     run, folder = task
     start = time.perf_counter()

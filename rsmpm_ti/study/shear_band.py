@@ -5,9 +5,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from rsmpm_ti import load_scene, simulate
-from rsmpm_ti.snapshot import SHEAR
+from rsmpm_ti.cases.case import Outcome, Row, at_most, difference
+from rsmpm_ti.records.snapshot import SHEAR
 from rsmpm_ti.study.runs import Run, Study
-from rsmpm_ti.verify.case import Outcome, Row, at_most, difference
 
 SEEDS = tuple(range(1, 9))
 WIDTH = 4e-3

@@ -2,7 +2,7 @@
 
 import sys
 
-from rsmpm_ti.verify.command import Suite, run_suite
+from rsmpm_ti.cases.command import Suite, run_suite
 
 SUITE = Suite(
     name="verify",

@@ -1,0 +1,1 @@
+"""What broke, measured from records and scene alone: load curve, cracks, fragments, acoustic emission."""

@@ -1,0 +1,77 @@
+"""What broke in a run: its cracks, fragments and acoustic events together, as tables and as numbers of summary.json."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from rsmpm_ti.analysis.acoustic_emission import BValue, Catalogue, b_value, gather
+from rsmpm_ti.analysis.crack_bands import Crack, find_bands, measure_cracks, openings
+from rsmpm_ti.analysis.crack_growth import rayleigh_speed
+from rsmpm_ti.analysis.flaw_tips import flaw_tips, initiations
+from rsmpm_ti.analysis.fragments import Fragments, find_fragments
+from rsmpm_ti.analysis.numerical_fracture import parting_warning
+from rsmpm_ti.records.events import EventTable
+from rsmpm_ti.records.snapshot import Snapshot
+from rsmpm_ti.spec.regions import slits_of
+from rsmpm_ti.spec.scene import Scene
+
+
+@dataclass(frozen=True, kw_only=True)
+class Fracture:
+    """Everything measured of what broke; lists of one length belong to each other."""
+
+    cracks: list[Crack]
+    openings: list[np.ndarray]  # opening and slip along each crack's path, [k, 2] [m]; no entries in 3D
+    initiation: list[dict]  # one per flaw tip, see `flaw_tips.initiations`; empty in 3D
+    fragments: Fragments
+    acoustic: Catalogue
+    b: BValue | None
+    rayleigh_speed: float  # of the rock as run, mass scaling included [m/s]
+    dim: int
+    warning: str = ""  # numerical fracture, see `numerical_fracture.py`
+
+    def numbers(self) -> dict:
+        """The part of summary.json that counts what broke, and warns of parting; None where not defined."""
+        plane = self.dim == 2
+        return {
+            "cracks": len(self.cracks),
+            "crack_length_m": float(sum(crack.course.length for crack in self.cracks)) if plane else None,
+            "fragments": len(self.fragments.pieces),
+            "largest_fragment_share": self.fragments.largest_share,
+            "acoustic_events": len(self.acoustic),
+            "b_value": self.b.b if self.b else None,
+            "b_value_error": self.b.error if self.b else None,
+            "initiation": self.initiation,
+            "numerical_fracture": self.warning or None,
+        }
+
+    @property
+    def paths(self) -> list[np.ndarray]:
+        """The cracks' lines, to be drawn, list of [k, 2] [m]; none in 3D."""
+        return [crack.course.path for crack in self.cracks if crack.course is not None]
+
+
+def measure_fracture(scene: Scene, history: np.ndarray, events: EventTable, snapshot: Snapshot) -> Fracture:
+    """Cracks, fragments and acoustic events of a run from its history, failures and last state.
+
+    With mass scaling every speed of a run is that of the scaled rock, so acoustic events and tip speeds use its waves.
+    """
+    spacing = max(scene.domain.dx / body.seeding.particles_per_axis for body in scene.bodies)
+    shear_speed = float(np.sqrt(scene.rock.elasticity.mu / scene.density))
+    tips = ()
+    if scene.dim == 2:
+        tips = flaw_tips(tuple(slit for body in scene.bodies for slit in slits_of(body.region)))
+    bands, graph = find_bands(events, spacing)
+    cracks = measure_cracks(events, bands, graph, tips, spacing, scene.time_scale)
+    acoustic = gather(events, spacing, shear_speed)
+    return Fracture(
+        cracks=cracks,
+        openings=openings(cracks, events, snapshot, scene.domain.dx) if scene.dim == 2 else [],
+        initiation=initiations(events, bands, tips, history),
+        fragments=find_fragments(snapshot, scene.rock.density),
+        acoustic=acoustic,
+        b=b_value(acoustic.magnitude),
+        rayleigh_speed=rayleigh_speed(shear_speed, scene.wave_speed),
+        dim=scene.dim,
+        warning=parting_warning(scene, snapshot),
+    )

@@ -1,0 +1,43 @@
+"""Numerical fracture: unbroken neighbours that have moved too far apart for their shape functions. NumPy only.
+
+Two particles hold on to each other through nodes that both reach. A shape function of crack band b cells guarantees
+such a node up to a distance of b dx, wherever they are in their cells; beyond it rock parts that no law has broken.
+"""
+
+import numpy as np
+from scipy.spatial import cKDTree
+
+from rsmpm_ti.records.snapshot import INTACT, Snapshot
+from rsmpm_ti.spec.scene import Scene
+
+NEIGHBOURS = 1.25
+"""Particles that started within so many spacings are neighbours: jittered ones too, those across a corner not."""
+
+
+def parted(scene: Scene, snapshot: Snapshot) -> np.ndarray:
+    """Places [m], [k, dim], in the middle of unbroken neighbours that nothing holds together any more, widest first."""
+    spacing = max(scene.domain.dx / body.seeding.particles_per_axis for body in scene.bodies)
+    bridge, near = scene.shape.crack_band * scene.domain.dx, NEIGHBOURS * spacing
+    finite = np.isfinite(snapshot.x).all(axis=1)  # not so at the end of a run that became unstable
+    whole = np.flatnonzero((snapshot.failure_mode == INTACT) & (snapshot.damage == 0.0) & finite)
+    x, u = snapshot.x[whole], snapshot.displacement[whole]
+    nowhere = np.zeros((0, scene.dim))
+    if len(whole) < 2 or np.linalg.norm(np.ptp(u, axis=0)) < bridge - near:  # as in every run of rock that is sound
+        return nowhere
+    a, b = cKDTree(x - u).query_pairs(near, output_type="ndarray").T
+    distance = np.linalg.norm(x[a] - x[b], axis=1)
+    wide = np.argsort(-distance)[: np.count_nonzero(distance > bridge)]
+    return 0.5 * (x[a] + x[b])[wide]
+
+
+def parting_warning(scene: Scene, snapshot: Snapshot) -> str:
+    """One line about numerical fracture at the end of a run, or nothing."""
+    places = parted(scene, snapshot)
+    if not len(places):
+        return ""
+    return (
+        f"{len(places)} pairs of unbroken neighbours are farther apart than {scene.shape.crack_band:g} cells, what "
+        f"{type(scene.shape).__name__} bridges, the widest at {np.array2string(1e3 * places[0], precision=3)} mm: the "
+        f"rock there has parted by its discretisation, not by its strength; end the run earlier, or take a wider shape "
+        f"function"
+    )

@@ -1,0 +1,53 @@
+"""Run cases: one in this process, or several at a time in processes of their own."""
+
+import importlib
+import multiprocessing
+import time
+from collections.abc import Iterator
+from dataclasses import dataclass
+from pathlib import Path
+
+from rsmpm_ti.cases.case import Case, Row
+from rsmpm_ti.cases.report import draw
+
+
+@dataclass(frozen=True)
+class Finished:
+    """What came of one case; `problem`: why it broke, if it did."""
+
+    name: str
+    rows: tuple[Row, ...]
+    seconds: float
+    problem: str = ""
+
+
+def cases_of(catalogue: str) -> dict[str, Case]:
+    """Cases by name, of a module that holds them as CASES."""
+    return importlib.import_module(catalogue).CASES
+
+
+def run_case(catalogue: str, name: str, full: bool, out: Path | None, threads: int = 1) -> tuple[Row, ...]:
+    """Run one case in this process and draw it into `out`, if it has a picture; its rows."""
+    from rsmpm_ti.backend.start import start_taichi
+
+    start_taichi("f64", "cpu", threads)
+    outcome = cases_of(catalogue)[name].run(full)
+    if out is not None and outcome.draw is not None:
+        draw(out / f"{name}.png", outcome)
+    return outcome.rows
+
+
+def _work(task: tuple) -> Finished:
+    catalogue, name, full, out, threads = task
+    start = time.perf_counter()
+    try:
+        rows, problem = run_case(catalogue, name, full, out, threads), ""
+    except Exception as error:  # a case that breaks is a miss of that case, and the others still run
+        rows, problem = (), f"{type(error).__name__}: {error}"
+    return Finished(name, rows, time.perf_counter() - start, problem)
+
+
+def run_cases(catalogue: str, names: list[str], full: bool, out: Path, jobs: int, threads: int) -> Iterator[Finished]:
+    """Each case in a process of its own, `jobs` at a time: Taichi's memory of one never meets the next."""
+    with multiprocessing.get_context("spawn").Pool(jobs, maxtasksperchild=1) as pool:
+        yield from pool.imap_unordered(_work, [(catalogue, name, full, out, threads) for name in names])

@@ -1,1 +1,0 @@
-"""Cracks as measured objects, from failure events and snapshots: paths, wings, growth, opening, pieces, emission."""

@@ -1,0 +1,76 @@
+"""How near each particle is to failure, and how much of its strength it has lost: looked at, never acted on.
+
+Load factors of the stress that decides on failure, with strengths k sigma_t and k c of the particle's own rock:
+
+    tension = sigma_1/(k sigma_t),    shear = ((sigma_1 - sigma_3)/2 + (sigma_1 + sigma_3)/2 sin(phi))/(k c cos(phi)),
+
+the terms of eq. 11 and 12 of the paper, each 1 at failure; margin = 1 - max(tension, shear, 0). With averaging, shear
+is of sigma_1 no greater than the tensile strength, as in the check.
+"""
+
+import numpy as np
+import taichi as ti
+
+from rsmpm_ti.failure.nonlocal_fields import mean_stress, smooth_stress
+from rsmpm_ti.failure.smeared_crack_stress import load_factors, strength_left, strengths
+from rsmpm_ti.failure.stress_update import own_shear_load, shaded
+from rsmpm_ti.rock.tensors import extreme_principals, principal_angle
+
+
+@ti.func
+def tensile_load(sim: ti.template(), p, own):
+    """Load factor in tension: `own`, by the particle's own stress, or by what decides instead with averaging.
+
+    That is the mean stress, and own stress where the particle is shaded from tension in its direction.
+    """
+    load = own
+    if ti.static(sim.averaging):
+        load = ti.select(shaded(sim, p, principal_angle(sim.particles.sigma[p])), own, 0.0)
+        mean = mean_stress(sim, p)
+        if not shaded(sim, p, principal_angle(mean)):
+            load = ti.max(load, extreme_principals(mean)[0] / strengths(sim, p)[0])
+    return load
+
+
+@ti.func
+def damage_of(sim: ti.template(), p):
+    """Share of strength that a failed particle has lost, where it has lost most: 1 at once by the paper's laws."""
+    damage = 1.0
+    if ti.static(sim.particles.cracks):
+        left, full = strength_left(sim, p), strengths(sim, p)
+        damage -= ti.min(left[0], left[1]) / full[0]  # no more than the share of cohesion: slip wears all of them
+    return damage
+
+
+@ti.kernel
+def judge_margins(
+    sim: ti.template(),
+    margin: ti.types.ndarray(dtype=ti.f64, ndim=1),
+    governs: ti.types.ndarray(dtype=ti.i32, ndim=1),
+    damage: ti.types.ndarray(dtype=ti.f64, ndim=1),
+):
+    particles, criterion = sim.particles, sim.rock.criterion
+    for p in particles.mode:
+        if particles.mode[p] == 0:
+            load = load_factors(sim, p, extreme_principals(particles.sigma[p]))
+            tension = tensile_load(sim, p, load[0] / criterion.tensile_strength)
+            shear = own_shear_load(sim, load)
+            margin[p] = 1.0 - ti.max(tension, shear, 0.0)
+            if ti.max(tension, shear) > 0.0:
+                governs[p] = ti.select(tension >= shear, 1, 2)  # tension is checked first
+        else:
+            margin[p], governs[p], damage[p] = 0.0, particles.mode[p], damage_of(sim, p)
+
+
+def margins(sim) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Margin to failure, what governs it (0 nothing, 1 tension, 2 shear) and damage, [n] each, as particles lie.
+
+    1, 0 and 0 everywhere in rock that does not break. See `Snapshot` for what they mean in rock that has failed.
+    """
+    n = sim.particles.count
+    margin, governs, damage = np.ones(n), np.zeros(n, dtype=np.int32), np.zeros(n)
+    if sim.particles.breaks:
+        if sim.averaging:
+            smooth_stress(sim)
+        judge_margins(sim, margin, governs, damage)
+    return margin, governs, damage

@@ -1,0 +1,132 @@
+"""Mean stress and mean crack strain over a length of the rock: spread to nodes, blurred along each axis, read back.
+
+2D.
+"""
+
+import taichi as ti
+
+from rsmpm_ti.fields.stencil import coordinates, weights_at
+from rsmpm_ti.method.tensor_product import tensor_gradient, tensor_weight
+from rsmpm_ti.rock.tensors import extreme_principals
+
+
+@ti.kernel
+def clear_means(sim: ti.template()):
+    zero = ti.Vector.zero(float, 6)
+    for i in ti.grouped(sim.means.sums):
+        sim.means.sums[i] = zero
+        sim.means.peak[i] = 0.0
+    for _ in range(1):
+        sim.means.fresh[None], sim.means.any_hot[None] = 0, 0
+
+
+@ti.kernel
+def spread_stress(sim: ti.template(), ticket: int):
+    """sum w_ip V_p sigma_p, sum w_ip V_p and sum w_ip V_p e_p to nodes; e: largest opening strain across the crack."""
+    particles = sim.particles
+    ti.loop_config(serialize=sim.traversal.serial, block_dim=sim.traversal.block)
+    for t in range(sim.traversal.items):
+        if t % sim.traversal.stride == 0:
+            for part in range(sim.traversal.parts):
+                start, stop, _ = sim.traversal.span(t, part, ticket)
+                for p in range(start, stop):
+                    xi = coordinates(sim, p)
+                    base = sim.grid.base(xi, sim.shape)
+                    w, dw = weights_at(sim, xi, base)
+                    sigma, V_p = particles.sigma[p], particles.volume[p] * particles.J[p]
+                    carried = V_p * ti.Vector([sigma[0], sigma[1], sigma[2], sigma[3], 1.0, particles.widest[p][0]])
+                    for offset in ti.static(sim.stencil):
+                        i = base + ti.Vector(offset)
+                        sim.traversal.add(sim.means.sums, i, tensor_weight(w, offset) * carried)
+                sim.traversal.done(t, part, ticket)
+
+
+@ti.kernel
+def blur(sim: ti.template(), source: ti.template(), target: ti.template(), axis: ti.template()):
+    """Convolution of node sums with the taps along one axis."""
+    reach = ti.static(sim.means.reach)
+    for i in ti.grouped(source):
+        total = ti.Vector.zero(float, 6)
+        for k in range(-reach, reach + 1):
+            j = i + k * ti.Vector.unit(2, axis)
+            if j[axis] >= 0 and j[axis] < sim.grid.nodes[axis]:
+                total += sim.means.taps[k + reach] * source[j]
+        target[i] = total
+
+
+@ti.func
+def mean_stress(sim: ti.template(), p):
+    """Packed mean stress at a particle."""
+    xi = coordinates(sim, p)
+    base = sim.grid.base(xi, sim.shape)
+    w, dw = weights_at(sim, xi, base)
+    total = ti.Vector.zero(float, 6)
+    for offset in ti.static(sim.stencil):
+        total += tensor_weight(w, offset) * sim.means.sums[base + ti.Vector(offset)]
+    return ti.Vector([total[0], total[1], total[2], total[3]]) / total[4]
+
+
+@ti.kernel
+def read_openings(sim: ti.template()):
+    """Crack strain of each cracked particle if its band had the opening of the rock around: Bazant & Lin (1988).
+
+    J. Struct. Eng. 114:2493. What averaging makes of a band is highest in its middle and falls off as a Gaussian; the
+    slope across the crack tells how far away the middle is, so that all rows of a band lose strength together. Beyond
+    half the band's width that fades, and beyond the whole of it there is none: the mean of a crack that gapes reaches
+    far, but what cracks there is no part of it.
+    """
+    particles, means = sim.particles, sim.means
+    for p in particles.mode:
+        if particles.mode[p] != 0:
+            xi = coordinates(sim, p)
+            base = sim.grid.base(xi, sim.shape)
+            w, dw = weights_at(sim, xi, base)
+            volume, strain, gradient = 0.0, 0.0, ti.Vector.zero(float, 2)
+            for offset in ti.static(sim.stencil):
+                total = means.sums[base + ti.Vector(offset)]
+                volume += tensor_weight(w, offset) * total[4]
+                strain += tensor_weight(w, offset) * total[5]
+            for offset in ti.static(sim.stencil):
+                total = means.sums[base + ti.Vector(offset)]
+                slope = tensor_gradient(w, dw, offset, sim.grid.inv_dx)
+                gradient += (total[5] - strain / volume * total[4]) * slope
+            n = ti.Vector([ti.cos(particles.crack_angle[p]), ti.sin(particles.crack_angle[p])])
+            away = ti.abs(gradient.dot(n)) * means.variance / ti.max(strain, 1e-30)
+            part = ti.max(0.0, ti.min(1.0, 2.0 - 2.0 * away / sim.band))
+            away = ti.min(away, 0.5 * sim.band)
+            middle = ti.exp(0.5 * away * away / means.variance) * strain / volume
+            particles.mean_opening[p] = part * middle / means.band_share
+
+
+@ti.kernel
+def mark_hot(sim: ti.template(), limit: float):
+    """Which nodes, and whether any, have a mean sigma_1 of at least `limit` [Pa].
+
+    The mean stress at a particle is a weighted mean of those at its nodes and sigma_1 is convex, so a particle without
+    a hot node cannot be overloaded: most are spared the reading.
+    """
+    for i in ti.grouped(sim.means.sums):
+        total, hot = sim.means.sums[i], 0
+        if total[4] > 0.0:
+            sigma = ti.Vector([total[0], total[1], total[2], total[3]])
+            if extreme_principals(sigma)[0] >= limit * total[4]:
+                hot = 1
+                sim.means.any_hot[None] = 1
+        sim.means.hot[i] = hot
+
+
+@ti.func
+def near_hot(sim: ti.template(), p):
+    base = sim.grid.base(coordinates(sim, p), sim.shape)
+    hot = 0
+    for offset in ti.static(sim.stencil):
+        hot |= sim.means.hot[base + ti.Vector(offset)]
+    return hot == 1
+
+
+def smooth_stress(sim) -> None:
+    """Fill sim.means.sums for `mean_stress` and `read_openings`."""
+    clear_means(sim)
+    spread_stress(sim, sim.traversal.ticket())
+    blur(sim, sim.means.sums, sim.means.other, 0)
+    blur(sim, sim.means.other, sim.means.sums, 1)

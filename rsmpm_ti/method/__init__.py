@@ -1,0 +1,1 @@
+"""What the material point method is: shape functions, transfers, time step."""

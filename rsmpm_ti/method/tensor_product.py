@@ -1,0 +1,62 @@
+"""Products of one-dimensional weights: what a particle and a node of its stencil are to each other."""
+
+import numpy as np
+import taichi as ti
+
+
+def offsets(shape, dim: int) -> tuple[tuple[int, ...], ...]:
+    """Node offsets of a stencil from its base node, first axis fastest: Python integers for static loops."""
+    grid = np.indices((shape.width,) * dim).reshape(dim, -1)[::-1]
+    return tuple(tuple(int(k) for k in column) for column in grid.T)
+
+
+def rows(shape, dim: int) -> tuple[tuple[tuple[int, ...], tuple[tuple[int, tuple[int, ...], int], ...]], ...]:
+    """The stencil by rows along the last axis: (offset along the other axes, its nodes), a node as (offset along the
+    last axis, whole offset, place in `offsets`)."""
+    stencil = offsets(shape, dim)
+    others = sorted({offset[:-1] for offset in stencil})
+    return tuple((r, tuple((o[-1], o, i) for i, o in enumerate(stencil) if o[:-1] == r)) for r in others)
+
+
+@ti.func
+def row_weight(w: ti.template(), row: ti.template()):
+    """Product of the weights along all axes but the last: what the nodes of a row share."""
+    weight = w[row[0], 0]
+    for d in ti.static(range(1, w.m - 1)):
+        weight *= w[row[d], d]
+    return weight
+
+
+@ti.func
+def row_gradient(w: ti.template(), dw: ti.template(), row: ti.template()):
+    """The same with the gradient's in place of the weight along one axis, for each axis but the last."""
+    gradient = ti.Vector.zero(float, w.m - 1)
+    for axis in ti.static(range(w.m - 1)):
+        g = dw[row[axis], axis]
+        for d in ti.static(range(w.m - 1)):
+            if ti.static(d != axis):
+                g *= w[row[d], d]
+        gradient[axis] = g
+    return gradient
+
+
+@ti.func
+def tensor_weight(w: ti.template(), offset: ti.template()):
+    """w_ip: the product of one weight per axis."""
+    weight = w[offset[0], 0]
+    for d in ti.static(range(1, w.m)):
+        weight *= w[offset[d], d]
+    return weight
+
+
+@ti.func
+def tensor_gradient(w: ti.template(), dw: ti.template(), offset: ti.template(), inv_dx):
+    """grad w_ip [1/m]: along each axis its own gradient times the other axes' weights."""
+    gradient = ti.Vector.zero(float, w.m)
+    for axis in ti.static(range(w.m)):
+        g = dw[offset[axis], axis] * inv_dx
+        for d in ti.static(range(w.m)):
+            if ti.static(d != axis):
+                g *= w[offset[d], d]
+        gradient[axis] = g
+    return gradient

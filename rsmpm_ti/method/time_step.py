@@ -1,0 +1,66 @@
+"""The time step: what a scene may take, and how it follows wave and particle speeds in a run."""
+
+import math
+
+from rsmpm_ti.errors import SceneError, refuse
+
+PAPER_DT = 1.91e-5
+"""The time step the paper prints [s]; a hundred times what its grid allows (paper sec. 4.1)."""
+
+USL_CFL = 0.55
+"""Smallest stability limit of usl over offsets and shape functions other than linear, in units of dx/c_p: 0.56 is found
+for Gimp (docs/stability.md)."""
+
+LEAST_CFL = 1e-6
+"""Smallest step over the time a wave needs for one cell: below it a run never ends and adds up round-off."""
+
+MOST = 2_000_000_000
+"""Most particles, grid nodes and steps: 32-bit numbers count them, and no machine here would hold or finish more."""
+
+
+def adapted(dt: float, wave_speed: float, J: float, speed: float) -> float:
+    """A step [s] for rock that moves, of the one that fits rock at rest: cfl dx/(c + |v|), never longer than dt.
+
+    dt = cfl dx/c_p; J: largest volume ratio of intact rock; speed: largest of a particle [m/s]. Moduli are constant and
+    the density is rho/J, so waves run at c = c_p sqrt(J). Failed rock, which only resists compression, is slower. The
+    sum is the speed of a wave through the cells that material carries along (Courant, Friedrichs & Lewy 1928).
+    """
+    return dt / max(1.0, math.sqrt(J) + speed / wave_speed)
+
+
+def stable_cfl(scene) -> float:
+    """Largest stable step of shape function, transfer and order, in units of dx/c_p."""
+    limit = scene.shape.affine_cfl if scene.transfer.affine else scene.shape.stable_cfl
+    return min(limit, USL_CFL) if scene.order == "usl" else limit
+
+
+def check_step(scene) -> None:
+    """Raises SceneError unless the steps of a `Scene` are stable and can be counted."""
+    schedule = scene.schedule
+    limit = stable_cfl(scene) * scene.domain.dx / scene.wave_speed
+    transit = scene.domain.dx / scene.wave_speed
+    true_transit = scene.domain.dx / scene.rock.wave_speed()  # without mass scaling: what the paper's digits are
+    if LEAST_CFL * transit <= scene.dt <= limit:
+        name = "t_end" if schedule.strain_end is None else "strain_end"
+        count = scene.t_end / scene.dt
+        if not 1.0 - 1e-9 <= count <= MOST:
+            allowed = f"from 1 to {MOST:.3g} steps of {scene.dt:.4g} s, not {count:.3g}"
+            causes = "cfl, dx, density, E, nu and time_scale"
+            if name == "strain_end":
+                causes += ", and the end from the platens' speed, position and start.time"
+            raise refuse(f"schedule.{name}", getattr(schedule, name), allowed, f"a step follows from {causes}")
+        return
+    if schedule.dt is not None and math.isclose(schedule.dt, PAPER_DT, rel_tol=0.01):
+        raise SceneError(
+            f"schedule.dt = {schedule.dt:g} s is refused: the paper prints this value, but it is "
+            f"{schedule.dt / true_transit:.0f} times dx/c_p = {true_transit:.5g} s, the time a P-wave needs "
+            f"for one cell; its digits are those of dx/c_p, so its exponent or unit is wrong; leave dt out or use "
+            f"at most {limit:.4g} s"
+        )
+    given = "schedule.dt" if schedule.dt is not None else "schedule.cfl"
+    raise refuse(
+        given,
+        schedule.dt if schedule.dt is not None else schedule.cfl,
+        f"such that dt = {scene.dt:.4g} is in [{LEAST_CFL * transit:.4g}, {limit:.4g}] s (dx/c_p = {transit:.4g} s)",
+        f"use cfl <= {limit / transit:.2f}",
+    )

@@ -1,0 +1,71 @@
+"""The clock of a run: steps, time, platen strain."""
+
+import math
+
+from rsmpm_ti.failure.crack_tracking import track_cracks
+from rsmpm_ti.fields.state import Simulation
+from rsmpm_ti.mpm.stepper import ORDERS
+
+
+class Clock:
+    """Counts steps of one run: time [s], platen strain (compression positive), platen speed over the full one.
+
+    `total` is how many steps the run takes: with steps that adapt, if none changes any more.
+    """
+
+    def __init__(self, sim: Simulation):
+        scene = sim.scene
+        self._sim, self._pass_list = sim, ORDERS[scene.order]
+        self.dt, self.total = scene.dt, scene.steps
+        self.end = scene.t_end if scene.schedule.adaptive else self.total * self.dt  # [s]
+        self.factor = scene.loading.start.factor
+        self.strain_rate = scene.loading.strain_rate if scene.loading.platens else math.nan
+        self.step, self.strain = 0, 0.0
+        self._since = 0, 0.0  # step and time at which steps of this length began
+
+    @property
+    def time(self) -> float:
+        return self._time_of(self.step)
+
+    def _time_of(self, step: float) -> float:
+        first, start = self._since
+        return start + (step - first) * self.dt
+
+    @property
+    def share(self) -> float:
+        """Of the run that is done, 0 to 1."""
+        return min(1.0, self.time / self.end)
+
+    def state(self) -> dict[str, float]:
+        """What `resume` needs to go on where this clock is."""
+        first, since = self._since
+        state = {"step": self.step, "total": self.total, "first": first}
+        return state | {"strain": self.strain, "dt": self.dt, "since": since}
+
+    def resume(self, state: dict[str, float]) -> None:
+        self.step, self.strain, self.dt = int(state["step"]), float(state["strain"]), float(state["dt"])
+        self.total, self._since = int(state["total"]), (int(state["first"]), float(state["since"]))
+
+    @property
+    def done(self) -> bool:
+        return self.step >= self.total
+
+    def retime(self, dt: float) -> None:
+        """Steps of dt [s] from here on."""
+        self._since, self.dt = (self.step, self.time), dt
+        self.total = self.step + math.ceil((self.end - self.time) / dt - 1e-6)
+
+    def advance(self, steps: int) -> None:
+        """Take steps, fewer if the run ends before; with averaging, a look for cracks every `interval` steps."""
+        last = min(self.step + steps, self.total)
+        while self.step < last:
+            chunk = last - self.step
+            if self._sim.averaging:  # a look comes after steps 1, 1 + interval, 1 + 2 interval ...
+                interval = self._sim.means.interval
+                chunk = min(chunk, (-self.step) % interval + 1)
+            factors = [self.factor(self._time_of(self.step + k + 0.5)) for k in range(chunk)]
+            self._pass_list(self._sim, self.dt, self.time, factors)
+            self.strain += sum(factors) * self.strain_rate * self.dt
+            self.step += chunk
+            if self._sim.averaging and (self.step - 1) % self._sim.means.interval == 0:
+                track_cracks(self._sim, self.time)

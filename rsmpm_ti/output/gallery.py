@@ -1,0 +1,68 @@
+"""The pictures of one run: frames, the movie that is made of them, and summary.png."""
+
+from pathlib import Path
+
+import numpy as np
+
+from rsmpm_ti.output.pictures import Commission
+from rsmpm_ti.paint.figure import FramePainter
+from rsmpm_ti.paint.movie import Movie
+from rsmpm_ti.paint.png import read_png, write_png
+from rsmpm_ti.paint.summary_picture import summary_picture
+from rsmpm_ti.records.snapshot import Snapshot
+
+
+class Gallery:
+    """Paints and writes the pictures of one run. Allocates Taichi fields, so Taichi must have been started."""
+
+    def __init__(self, wanted: Commission):
+        self._wanted, self._out = wanted, wanted.out
+        self.painters = {kind: FramePainter(kind=kind, **wanted.painters) for kind in wanted.kinds}
+        self.warning = ""
+        self._movie = None
+        if wanted.movie:
+            try:
+                self._movie = Movie(self._out / f"{wanted.name}.mp4")
+            except RuntimeError as error:  # no encoder: frames still come
+                self.warning = str(error)
+
+    def paint(self, number: int, snapshot: Snapshot, history: np.ndarray) -> dict[str, np.ndarray]:
+        """Frames by kind, for `write`."""
+        return {kind: painter.paint(snapshot, history, number) for kind, painter in self.painters.items()}
+
+    def write(self, number: int, images: dict[str, np.ndarray]) -> None:
+        """Frames to files and into the movie; in order of their numbers."""
+        for kind, image in images.items():
+            write_png(frame_path(self._out, kind, number), image, painter=self._wanted.painters["backend"])
+        self._film(images["stress"], images["cracks"])
+
+    def refilm(self, count: int) -> None:
+        """Begin the movie with the first `count` frames of a run that goes on, from their files."""
+        for number in range(count):
+            self._film(*(read_png(frame_path(self._out, kind, number)) for kind in ("stress", "cracks")))
+
+    def _film(self, stress: np.ndarray, cracks: np.ndarray) -> None:
+        if self._movie is not None:
+            self._movie.add(stress, cracks)
+
+    def discard(self) -> None:
+        """Remove what there is of a movie that cannot be finished."""
+        if self._movie is not None:
+            self._movie.discard()
+
+    def close(self, snapshot: Snapshot, history: np.ndarray, paths: list[np.ndarray], acoustic: np.ndarray) -> None:
+        """Finish the movie, paint summary.png, give the painters' memory back.
+
+        paths: lines of cracks, each [k, 2] [m]; acoustic: times of acoustic events, ascending [s].
+        """
+        if self._movie is not None:
+            self._movie.close()
+        summary_picture(
+            self._out / "summary.png", snapshot, history, self.painters["cracks"], self._wanted.title, paths, acoustic
+        )
+        for painter in self.painters.values():
+            painter.close()
+
+
+def frame_path(out: Path, kind: str, number: int) -> Path:
+    return out / "frames" / f"{kind}_{number:04d}.png"

@@ -1,0 +1,77 @@
+"""What to paint of a run: kinds of frames, limits and titles, in plain values."""
+
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+from rsmpm_ti.rock.criteria import MohrCoulomb
+from rsmpm_ti.rock.softening import Brittle
+from rsmpm_ti.spec.scene import Scene
+
+
+@dataclass(frozen=True, kw_only=True)
+class Commission:
+    """What is to be painted of one run, in plain values: they reach the process that paints.
+
+    kinds: of frames; painters: keywords that all of them share; title: of summary.png; name: of the movie.
+    """
+
+    kinds: tuple[str, ...]
+    painters: dict
+    title: str
+    name: str
+    movie: bool
+    out: Path
+
+
+def commission(scene: Scene, name: str, out: Path, volume: float) -> Commission:
+    """volume: of all particles [m^dim], from which the end of the load axis is estimated."""
+    low, high = zip(*(body.region.bounds() for body in scene.bodies), strict=True)
+    lower, upper = np.min(low, axis=0)[:2], np.max(high, axis=0)[:2]
+    strain, load = load_limits(scene, volume)
+    painters = {
+        "lower": tuple(lower), "upper": tuple(upper), "stress_limit": stress_limit(scene, load),
+        "strain_limit": strain, "load_limit": load, "backend": scene.output.painter, "softens": softens(scene),
+    }  # fmt: skip
+    kinds = ("stress", "cracks", "margin") if scene.output.margin else ("stress", "cracks")
+    return Commission(
+        kinds=kinds, painters=painters, title=scene.title, name=name, movie=scene.output.movie, out=Path(out)
+    )
+
+
+def softens(scene: Scene) -> bool:
+    """Whether the rock of a scene loses its strength while it cracks, not at once."""
+    law = scene.rock.after_failure
+    return law.directional and not isinstance(law.softening, Brittle)
+
+
+def stress_limit(scene: Scene, load: float | None) -> float:
+    """Colour limit [Pa]: 1.5 times the tensile strength, or for an elastic run a tenth of the load expected."""
+    if scene.output.stress_limit is not None:
+        return scene.output.stress_limit
+    if isinstance(scene.rock.criterion, MohrCoulomb):
+        return 1.5 * scene.rock.criterion.tensile_strength
+    return 0.1 * load if load else 1e6
+
+
+def load_limits(scene: Scene, volume: float) -> tuple[float | None, float | None]:
+    """Ends of the inset's axes: the last strain, and the nominal stress of a uniformly strained body of this volume.
+
+    That is an upper bound of the elastic load (Voigt); the strength bounds it too. Confinement adds its pressure.
+    """
+    if scene.loading.platens is None or scene.loading.width is None:
+        return None, None
+    strain = abs(scene.schedule.strain_end or scene.loading.strain_rate * scene.t_end)
+    if strain == 0.0:  # platens that stand still
+        return None, None
+    load = (
+        scene.rock.elasticity.uniaxial_modulus(scene.dim)
+        * strain
+        * volume
+        / (scene.loading.height * scene.loading.width)
+    )
+    load += scene.loading.confinement
+    if isinstance(scene.rock.criterion, MohrCoulomb):
+        load = min(load, 1.05 * scene.rock.criterion.strength(scene.loading.confinement))
+    return strain, load

@@ -1,0 +1,1 @@
+"""What leaves the solver: plain NumPy, no Taichi."""

@@ -1,0 +1,36 @@
+"""What a run hands out: what it leaves behind, and what a progress bar shows meanwhile."""
+
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+from rsmpm_ti.records.snapshot import Snapshot
+
+
+@dataclass(frozen=True)
+class Result:
+    """What a run leaves behind. `history`: structured array of HISTORY_COLUMNS; `summary`: the dict of summary.json;
+    `events`: EventTable; `fracture`: cracks, fragments and acoustic events measured on them; `snapshot`: last state.
+    `stopped`: "" when the run reached its end, else why it did not."""
+
+    history: np.ndarray
+    summary: dict
+    events: object
+    fracture: object
+    snapshot: Snapshot
+    out: Path | None
+    stopped: str = ""
+
+
+@dataclass(frozen=True)
+class Progress:
+    """What a progress bar shows."""
+
+    share: float
+    time: float
+    strain: float
+    stress: float
+    failed_tension: int
+    failed_shear: int
+    particle_steps_per_s: float

@@ -1,0 +1,1 @@
+"""What rock is: tensors, elasticity, failure criteria, laws after failure, viscosity, heterogeneity."""

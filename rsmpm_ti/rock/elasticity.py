@@ -1,0 +1,88 @@
+"""Elasticity of rock."""
+
+from dataclasses import dataclass
+
+import taichi as ti
+
+from rsmpm_ti.checks import check_kinds, check_positive
+from rsmpm_ti.errors import refuse
+from rsmpm_ti.rock.tensors import double_contraction, hughes_winget, isotropic, trace
+
+
+@ti.data_oriented
+@dataclass(frozen=True, kw_only=True)
+class Hooke:
+    """Isotropic linear elasticity with objective rotation.  E [Pa], nu [-].
+
+    `plane_stress` (2D only): the thickness strain is the one that keeps sigma_zz = 0, d_eps_zz = -nu/(1 - nu)
+    (d_eps_xx + d_eps_yy); otherwise 2D is plane strain.
+
+    sigma <- R sigma R^T + lambda tr(d_eps) 1 + 2 mu d_eps, R of Hughes & Winget (1980): the invariants of a spinning
+    stressed particle stay constant, where the explicit Jaumann form grows them by exp(8 pi^2/n) per turn of n steps.
+    """
+
+    E: float
+    nu: float
+    plane_stress: bool = False
+
+    def __post_init__(self):
+        check_kinds("elasticity", self)
+        check_positive("elasticity.E", self.E, "stiffness in Pa")
+        if not -1.0 < self.nu < 0.5:
+            raise refuse("elasticity.nu", self.nu, "in (-1, 0.5)", "at 0.5 the wave speed is infinite; use 0.499")
+
+    @property
+    def lam(self) -> float:
+        return self.E * self.nu / ((1.0 + self.nu) * (1.0 - 2.0 * self.nu))
+
+    @property
+    def mu(self) -> float:
+        return self.E / (2.0 * (1.0 + self.nu))
+
+    @property
+    def bulk(self) -> float:
+        return self.E / (3.0 * (1.0 - 2.0 * self.nu))
+
+    @property
+    def crack_stiffness(self) -> tuple[float, float, float]:
+        """Stress lost across a crack, along it and out of the plane per opening strain of the crack [Pa]."""
+        if self.plane_stress:
+            return self.p_wave_modulus, self.nu * self.p_wave_modulus, 0.0
+        return self.p_wave_modulus, self.lam, self.lam
+
+    @property
+    def p_wave_modulus(self) -> float:
+        """rho c^2 of the fastest wave [Pa]: lambda + 2 mu, or E/(1 - nu^2) in a plate that is free to thicken."""
+        return self.E / (1.0 - self.nu**2) if self.plane_stress else self.lam + 2.0 * self.mu
+
+    def uniaxial_modulus(self, dim: int) -> float:
+        """Axial stress over axial strain of a free-sided specimen [Pa]: E/(1 - nu^2) in plane strain, else E."""
+        return self.E / (1.0 - self.nu**2) if dim == 2 and not self.plane_stress else self.E
+
+    def lateral_ratio(self, dim: int) -> float:
+        """Lateral over axial strain of a free-sided specimen: nu/(1 - nu) in plane strain, else nu."""
+        return self.nu / (1.0 - self.nu) if dim == 2 and not self.plane_stress else self.nu
+
+    @ti.func
+    def stress(self, sigma, G):
+        """New packed stress from the step's displacement gradient G = dt grad v, dim x dim."""
+        rotated, d_eps = hughes_winget(sigma, G)
+        if ti.static(self.plane_stress):
+            d_eps[2] = -self.nu / (1.0 - self.nu) * (d_eps[0] + d_eps[1])
+        return rotated + isotropic(self.lam * trace(d_eps), sigma.n) + 2.0 * self.mu * d_eps
+
+    @ti.func
+    def volume_ratio(self, G):
+        """Ratio by which the step changes a particle's volume: det(1 + G), and in plane stress the thickness ratio.
+
+        That ratio is det(1 + G)^(-nu/(1 - nu)), reversible, as a crack that opens and closes needs.
+        """
+        ratio = (ti.Matrix.identity(float, G.n) + G).determinant()
+        if ti.static(self.plane_stress):
+            ratio = ratio ** ((1.0 - 2.0 * self.nu) / (1.0 - self.nu))
+        return ratio
+
+    @ti.func
+    def energy(self, sigma):
+        """Strain energy per volume [J/m^3]: sigma:sigma/(4 mu) - nu tr(sigma)^2/(2 E)."""
+        return double_contraction(sigma, sigma) / (4.0 * self.mu) - self.nu * trace(sigma) ** 2 / (2.0 * self.E)

@@ -1,0 +1,82 @@
+"""Which stress decides on tensile failure, and which opening on loss of strength: a particle's own, or the rock's."""
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from rsmpm_ti.checks import check_kinds, check_positive
+from rsmpm_ti.errors import refuse
+
+
+@dataclass(frozen=True, kw_only=True)
+class Local:
+    """Each particle's own stress and opening decide: what fails first then depends on cell size and edges."""
+
+    acts = False
+
+
+@dataclass(frozen=True, kw_only=True)
+class Nonlocal:
+    """The mean stress over a length of the rock decides on tension; its most overloaded particle fails first.
+
+    The mean is weighted by a Gaussian of standard deviation `length` [m], a property of the rock like its grain, over
+    the rock that is there: free faces and flaws weigh nothing. Bazant & Jirasek (2002), J. Eng. Mech. 128:1119, eq. 1.
+
+    A crack grows as a line, not as the blob in which the smooth stress is high: what lies beside a crack, outside a
+    wedge of `wedge` degrees about its line and nearer than `shade` lengths, is judged by its own stress, which the
+    crack relieves. Local tracking with an exclusion radius, Cervera & Chiumenti (2006), Comput. Methods Appl. Mech.
+    Eng. 196:304, sec. 4.
+
+    A cracked particle loses tensile strength by the opening of the crack that it is part of, read from the mean crack
+    strain over the same length, not by its own share of it: then a crack costs G_f per area however many rows of
+    particles it runs through. Bazant & Lin (1988), J. Struct. Eng. 114:2493. So `length` must be short against the zone
+    in which strength is lost, about E G_f/sigma_t^2; where it is not, a crack's tip is robbed of strength by the crack
+    behind it.
+    """
+
+    length: float
+    shade: float = 4.0
+    wedge: float = 25.0
+
+    acts = True
+
+    def __post_init__(self):
+        check_kinds("averaging", self)
+        check_positive("averaging.length", self.length, "length in metres")
+        if not 0.0 <= self.shade <= 100.0:
+            raise refuse("averaging.shade", self.shade, "in [0, 100] lengths")
+        if not 0.1 <= self.wedge <= 89.9:
+            raise refuse("averaging.wedge", self.wedge, "in [0.1, 89.9] degrees")
+
+    @property
+    def radius(self) -> float:
+        """Distance up to which a crack shades what lies beside it [m]."""
+        return self.shade * self.length
+
+    @property
+    def slope(self) -> float:
+        """Distance across over distance along of the edge of the wedge that a crack does not shade."""
+        return math.tan(math.radians(self.wedge))
+
+    def taps(self, dx: float, variance: float) -> tuple[float, ...]:
+        """Weights of a row of nodes, symmetric about the middle one, whose variance with that of spreading to nodes
+        and reading back, `variance` cells^2 each, is length^2."""
+        spare = (self.length / dx) ** 2 - 2.0 * variance
+        if spare < 0.36:  # a sampled Gaussian this narrow has another variance than it should; three points have it
+            return (0.5 * spare, 1.0 - spare, 0.5 * spare)
+        reach = math.ceil(3.5 * math.sqrt(spare))
+        weight = np.exp(-0.5 * np.arange(-reach, reach + 1) ** 2 / spare)
+        return tuple((weight / weight.sum()).tolist())
+
+    def band_share(self, width: float) -> float:
+        """What averaging leaves, in its middle, of a strain that is 1 in a band `width` [m] wide and 0 beside it."""
+        return math.erf(width / (2.0 * math.sqrt(2.0) * self.length))
+
+    def band_variance(self, width: float) -> float:
+        """Variance of such a band after averaging [m^2]."""
+        return self.length**2 + width**2 / 12.0
+
+    def least_length(self, dx: float, variance: float) -> float:
+        """The shortest length that this grid can average over [m]."""
+        return math.sqrt(2.0 * variance) * dx

@@ -1,0 +1,42 @@
+"""What rock does: elasticity, failure criteria, laws after failure, artificial viscosity.
+
+Sign convention, stated once: tension positive, sigma is Cauchy stress [Pa], sigma_1 >= sigma_3. A pressure p is
+compression positive. J = det F is tracked from the start of the run, so an opened crack carries nothing until its
+faces meet again.
+"""
+
+import math
+from dataclasses import dataclass
+
+import taichi as ti
+
+from rsmpm_ti.checks import check_kinds, check_positive
+from rsmpm_ti.rock.after_failure import Clipped, CompressionOnly, Void
+from rsmpm_ti.rock.criteria import MohrCoulomb, Unbreakable
+from rsmpm_ti.rock.elasticity import Hooke
+from rsmpm_ti.rock.heterogeneity import Uniform, Weibull
+from rsmpm_ti.rock.nonlocal_mean import Local, Nonlocal
+from rsmpm_ti.rock.smeared_crack import Directional
+from rsmpm_ti.rock.viscosity import BulkViscosity, NoViscosity
+
+
+@ti.data_oriented
+@dataclass(frozen=True, kw_only=True)
+class Rock:
+    """One rock: density [kg/m^3], the four laws it is made of, and how its strength varies from place to place."""
+
+    density: float
+    elasticity: Hooke
+    criterion: MohrCoulomb | Unbreakable
+    after_failure: CompressionOnly | Void | Clipped | Directional = CompressionOnly()
+    viscosity: BulkViscosity | NoViscosity = BulkViscosity()
+    averaging: Local | Nonlocal = Local()
+    heterogeneity: Uniform | Weibull = Uniform()
+
+    def __post_init__(self):
+        check_kinds("rock", self)
+        check_positive("rock.density", self.density, "density in kg/m^3")
+
+    def wave_speed(self, time_scale: float = 1.0) -> float:
+        """Speed of the fastest wave, c_p unless in plane stress [m/s], with the density scaled by time_scale^2."""
+        return math.sqrt(self.elasticity.p_wave_modulus / self.density) / time_scale

@@ -1,0 +1,78 @@
+"""How strength is lost while a crack opens or slips: at once, or over a fracture energy spread over a crack band.
+
+A law gives the share of strength that is left after a crack strain. Crack band (Bazant & Oh 1983, Mater. Struct.
+16:155): a band of width h opens by w = h x crack strain and must cost G_f per area of crack whatever h is, so the
+softening branch is scaled by h. `strength` is the value at which softening starts [Pa], `energy` G_f [J/m^2].
+"""
+
+from dataclasses import dataclass
+
+import taichi as ti
+
+from rsmpm_ti.checks import check_kinds, check_positive
+
+
+def _check_energies(law) -> None:
+    check_kinds("softening", law)
+    for name in ("G_f_I", "G_f_II"):
+        check_positive(f"softening.{name}", getattr(law, name), "energy per area in J/m^2")
+
+
+@ti.data_oriented
+@dataclass(frozen=True, kw_only=True)
+class Brittle:
+    """All strength is gone at failure: no fracture energy, so results follow the cell size (the paper's assumption)."""
+
+    G_f_I = G_f_II = 0.0
+
+    def steepest(self, strength: float, energy: float) -> float:
+        """Largest loss of strength per crack opening [Pa/m]; it is what snap-back is checked against."""
+        return 0.0
+
+    @ti.func
+    def share(self, strain, strength, energy, h):
+        return ti.select(strain > 0.0, 0.0, 1.0)
+
+
+@ti.data_oriented
+@dataclass(frozen=True, kw_only=True)
+class LinearSoftening:
+    """Strength falls linearly with the opening: f (1 - w f/(2 G_f)); gone at w = 2 G_f/f.
+
+    G_f_I: energy per crack area in tension; G_f_II: of cohesion lost in shear, friction not counted [J/m^2].
+    """
+
+    G_f_I: float
+    G_f_II: float
+
+    def __post_init__(self):
+        _check_energies(self)
+
+    def steepest(self, strength: float, energy: float) -> float:
+        return strength**2 / (2.0 * energy)
+
+    @ti.func
+    def share(self, strain, strength, energy, h):
+        return ti.max(1.0 - 0.5 * strain * h * strength / energy, 0.0)
+
+
+@ti.data_oriented
+@dataclass(frozen=True, kw_only=True)
+class ExponentialSoftening:
+    """Strength falls as f exp(-w f/G_f): steep first, then a long tail, as measured on concrete and rock.
+
+    G_f_I: energy per crack area in tension; G_f_II: of cohesion lost in shear, friction not counted [J/m^2].
+    """
+
+    G_f_I: float
+    G_f_II: float
+
+    def __post_init__(self):
+        _check_energies(self)
+
+    def steepest(self, strength: float, energy: float) -> float:
+        return strength**2 / energy
+
+    @ti.func
+    def share(self, strain, strength, energy, h):
+        return ti.exp(-strain * h * strength / energy)

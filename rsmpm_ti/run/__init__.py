@@ -1,0 +1,1 @@
+"""One run of a scene, from its start to its last file."""

@@ -1,0 +1,127 @@
+"""A run in the middle, as arrays: taken between two history rows, written by the writer, read back by `--resume`.
+
+Everything that the next step or the next row depends on, as it lies in memory and in the order in which it lies there,
+so that a run that goes on takes the same sums in the same order as one that was never stopped.
+"""
+
+import json
+import zipfile
+from pathlib import Path
+
+import numpy as np
+
+from rsmpm_ti.errors import SceneError
+from rsmpm_ti.output.files import CHECKPOINTS
+from rsmpm_ti.records.snapshot import HISTORY_COLUMNS
+from rsmpm_ti.solver.outflow import Dropped
+
+EVENT_COLUMNS = ("time", "x", "mode", "sigma_1", "sigma_3", "released", "id")
+LEDGER = ("impulse", "work", "latest", "body_work", "viscous", "released")
+PER_SLOT = ("body_work", "viscous", "released")
+"""Those of the ledger that have a slot for each thread: their sum is what counts."""
+
+
+def take(drive, history, progress: dict, identity: dict) -> dict[str, np.ndarray]:
+    """Arrays of a checkpoint. progress: numbers of the run's loop; identity: what a run that goes on must share."""
+    sim = drive.sim
+    arrays = particle_arrays(sim)
+    arrays |= {f"ledger_{name}": getattr(sim.ledger, name).to_numpy() for name in LEDGER}
+    count = sim.events.count[None]
+    arrays |= {f"event_{name}": getattr(sim.events, name).to_numpy()[:count] for name in _event_columns(sim)}
+    arrays["event_by_mode"] = sim.events.by_mode.to_numpy()
+    arrays["event_onset"] = np.array(sim.events.onset[None])
+    arrays["history"] = np.array(history.rows, dtype=float).reshape(-1, len(HISTORY_COLUMNS))
+    arrays |= {f"baseline_{name}": np.array(value) for name, value in history.baseline.items()}
+    arrays |= {f"dropped_{name}": np.array(value) for name, value in vars(drive.dropped).items()}
+    arrays |= {f"clock_{name}": np.array(value) for name, value in drive.clock.state().items()}
+    arrays["text"] = np.array(json.dumps({"progress": progress, "identity": identity}))
+    return arrays
+
+
+def restore(arrays: dict[str, np.ndarray], drive, history) -> dict:
+    """Put a checkpoint's state into a run of the same scene that has not begun; its `progress`."""
+    sim = drive.sim
+    for name, field in _particle_fields(sim):
+        field.from_numpy(arrays[f"particle_{name}"])
+    for name in LEDGER:
+        field, kept = getattr(sim.ledger, name), arrays[f"ledger_{name}"]
+        if name in PER_SLOT and len(kept) != field.shape[0]:  # written with another number of threads
+            kept = np.concatenate(([kept.sum()], np.zeros(field.shape[0] - 1)))
+        field.from_numpy(kept)
+    count = len(arrays["event_time"])
+    for name in _event_columns(sim):
+        field = getattr(sim.events, name)
+        column = field.to_numpy()
+        column[:count] = arrays[f"event_{name}"]
+        field.from_numpy(column)
+    sim.events.count[None], sim.events.onset[None] = count, float(arrays["event_onset"])
+    sim.events.by_mode.from_numpy(arrays["event_by_mode"])
+    history.rows[:] = [tuple(row) for row in arrays["history"].tolist()]
+    history.baseline = {name: arrays[f"baseline_{name}"] for name in history.baseline}
+    drive.clock.resume({name: arrays[f"clock_{name}"] for name in drive.clock.state()})
+    drive.dropped = Dropped(
+        count=int(arrays["dropped_count"]), momentum=arrays["dropped_momentum"],
+        **{name: float(arrays[f"dropped_{name}"]) for name in ("mass", "energy")},
+    )  # fmt: skip
+    drive.look()
+    return json.loads(str(arrays["text"]))["progress"]
+
+
+def particle_arrays(sim) -> dict[str, np.ndarray]:
+    """Every stored component of the particles as it lies in memory."""
+    return {f"particle_{name}": field.to_numpy() for name, field in _particle_fields(sim)}
+
+
+def _particle_fields(sim) -> list[tuple[str, object]]:
+    """Every stored component, and the cell of each particle at the last sort, on which the order of sums depends."""
+    particles = sim.particles
+    real = [(f"real_{k}", c) for k, c in enumerate(particles.real_components)]
+    return [*real, *((f"whole_{k}", c) for k, c in enumerate(particles.whole_components)), ("key", particles.key)]
+
+
+def _event_columns(sim) -> tuple[str, ...]:
+    return (*EVENT_COLUMNS, "crack_angle") if sim.events.directional else EVENT_COLUMNS
+
+
+def read(out: Path, identity: dict) -> dict[str, np.ndarray] | None:
+    """The latest checkpoint in a run's folder that can be read whole; None where there is none at all.
+
+    Raises SceneError where it belongs to another scene, version or precision, naming the difference, and where there
+    are only damaged ones.
+    """
+    damaged = ""
+    for name in CHECKPOINTS:
+        path = Path(out) / name
+        if not path.exists():
+            continue
+        try:
+            with np.load(path, allow_pickle=False) as file:
+                arrays = {key: file[key] for key in file.files}  # reads all of it, against its checksums
+            kept = json.loads(str(arrays["text"]))["identity"]
+        except (OSError, ValueError, KeyError, EOFError, zipfile.BadZipFile, NotImplementedError) as error:
+            damaged = f"{path} is damaged ({' '.join(str(error).split())})"
+            continue
+        where = difference(kept, json.loads(json.dumps(identity)))
+        if where:
+            raise SceneError(
+                f"{path} is of another run and is refused: {where}; resume with the options of that run, or start anew "
+                f"without --resume"
+            )
+        return arrays
+    if damaged:
+        raise SceneError(f"{damaged} and there is no other; start anew without --resume")
+    return None
+
+
+def difference(there, here, where: str = "") -> str:
+    """The first place in which two plain structures differ, in words; "" where they do not."""
+    if isinstance(there, dict) and isinstance(here, dict):
+        for key in sorted(set(there) | set(here)):
+            found = difference(there.get(key), here.get(key), f"{where}.{key}" if where else key)
+            if found:
+                return found
+        return ""
+    if isinstance(there, list) and isinstance(here, list) and len(there) == len(here):
+        pairs = enumerate(zip(there, here, strict=True))
+        return next(filter(None, (difference(a, b, f"{where}[{k}]") for k, (a, b) in pairs)), "")
+    return "" if there == here else f"{where} is {there!r} there and {here!r} here"

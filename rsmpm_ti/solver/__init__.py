@@ -1,0 +1,1 @@
+"""Many steps: chunks of steps, surveys, history, guard, and copies for those outside."""

@@ -1,0 +1,75 @@
+"""A scene in motion: steps in chunks that are safe for the slabs, with a look at the particles after each."""
+
+import math
+
+import numpy as np
+
+from rsmpm_ti.fields.cell_order import first_rows, sort_particles
+from rsmpm_ti.fields.state import Simulation
+from rsmpm_ti.method.time_step import adapted
+from rsmpm_ti.mpm.clock import Clock
+from rsmpm_ti.solver.guard import guard
+from rsmpm_ti.solver.outflow import Dropped, drop
+from rsmpm_ti.solver.survey import survey
+from rsmpm_ti.spec.scene import Scene
+
+STRAY_SHARE = 0.02
+"""Share of particles outside the cell they were sorted into above which they are sorted again."""
+
+SAFE_CELLS = 0.4
+"""Between two looks at the particles none may move further than this many cells, or slabs could meet."""
+
+
+class Drive:
+    """Particles, clock and the latest survey of one scene. Taichi must have been started."""
+
+    def __init__(self, scene: Scene, seeds, real, gpu: bool = False, deterministic: bool = False):
+        """seeds: `scene.particles()`; real: ti.f64 or ti.f32; deterministic: same bits with any number of threads."""
+        self.sim = Simulation(scene, seeds, real, gpu, deterministic)
+        sort_particles(self.sim)
+        self.clock = Clock(self.sim)
+        self.survey = survey(self.sim)
+        self.dropped = Dropped(count=0, mass=0.0, momentum=np.zeros(scene.dim), energy=0.0)
+
+    def look(self) -> None:
+        """Look at particles whose state, with the cells of their last sort, was put in from outside."""
+        self.sim.traversal.refresh(first_rows(self.sim))
+        self.sim.nodes.forget_empty()
+        self.survey = survey(self.sim)
+
+    def advance(self, steps: int) -> None:
+        """Take steps, fewer if the scene ends before; if they adapt, as many as the time of so many scene.dt needs.
+
+        Raises UnstableRun when a particle is no longer rock.
+        """
+        if self.sim.scene.schedule.adaptive:
+            self._advance_to(min(self.clock.time + steps * self.sim.scene.dt, self.clock.end))
+            return
+        remaining = min(steps, self.clock.total - self.clock.step)
+        while remaining > 0:
+            remaining -= self._chunk(remaining)
+
+    def _advance_to(self, time: float) -> None:
+        """Equal steps to a time [s], as many as the latest look asks for, and after each look again."""
+        scene, clock = self.sim.scene, self.clock
+        remaining = 1
+        while remaining > 0:
+            limit = adapted(scene.dt, scene.wave_speed, self.survey.J_intact, self.survey.speed)
+            remaining = math.ceil((time - clock.time) / limit - 1e-9)
+            if remaining > 0:
+                clock.retime((time - clock.time) / remaining)
+                remaining -= self._chunk(remaining)
+
+    def _chunk(self, most: int) -> int:
+        """Take steps, at most so many, look at the particles, and sort them if they need it; how many were taken."""
+        travel = max(self.survey.speed * self.clock.dt, 1e-30)
+        chunk = min(most, max(1, math.floor(SAFE_CELLS * self.sim.grid.dx / travel)))
+        self.clock.advance(chunk)
+        self.survey = survey(self.sim)
+        if self.survey.outside and not self.survey.sick:
+            self.survey, self.dropped = drop(self.sim, self.survey, self.dropped)
+        guard(self.sim, self.clock, self.survey)
+        # slabs bear a stray of one row: half a cell beyond it and SAFE_CELLS more is still less than that
+        if self.survey.far_strays or self.survey.strays > STRAY_SHARE * self.sim.particles.count:
+            sort_particles(self.sim)
+        return chunk

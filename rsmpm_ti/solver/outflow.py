@@ -1,0 +1,87 @@
+"""Particles that leave the domain: taken out of the run, and what went with them.
+
+A dropped particle has no volume and lies at rest and without stress in the middle of the domain, behind all others in
+memory (see `sort_particles`), where no pass comes: it adds nothing to nodes and nothing is done to it.
+"""
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+import taichi as ti
+
+from rsmpm_ti.errors import UnstableRun
+from rsmpm_ti.fields.cell_order import sort_particles
+from rsmpm_ti.fields.state import Simulation
+from rsmpm_ti.fields.stencil import coordinates
+from rsmpm_ti.solver.survey import Survey, left_domain, survey
+
+
+@dataclass(frozen=True, kw_only=True)
+class Dropped:
+    """What has left so far: particles, mass [kg], momentum [kg m/s], [dim], energy [J]; per metre of thickness in 2D.
+
+    Mass is the rock's own. Momentum and energy, kinetic and elastic, are those of the run, mass scaling included.
+    """
+
+    count: int
+    mass: float
+    momentum: np.ndarray
+    energy: float
+
+    def numbers(self) -> dict:
+        """The part of summary.json that tells of them."""
+        return {
+            "dropped": self.count,
+            "dropped_mass_kg": self.mass,
+            "dropped_momentum_kg_m_s": self.momentum.tolist(),
+            "dropped_energy_J": self.energy,
+        }
+
+
+@ti.kernel
+def park(sim: ti.template()):
+    """Take every particle outside the domain out of the run."""
+    particles = sim.particles
+    for p in particles.key:
+        if left_domain(sim, coordinates(sim, p)):
+            particles.volume[p] = 0.0
+            particles.J[p] = sim.J_start
+            for d in ti.static(range(sim.dim)):
+                middle = sim.grid.origin[d] + 0.5 * (sim.grid.nodes[d] - 1) * sim.grid.dx
+                particles.u[p][d] = middle - particles.reference[p][d]
+            particles.v[p] = ti.Vector.zero(float, sim.dim)
+            particles.sigma[p] = ti.Vector.zero(float, particles.sigma.n)
+            if ti.static(particles.affine):
+                particles.C[p] = ti.Matrix.zero(float, sim.dim, sim.dim)
+            if ti.static(particles.viscous):
+                particles.q[p] = 0.0
+            if ti.static(particles.breaks):
+                particles.mode[p] = ti.max(particles.mode[p], 1)  # nothing looks for cracks in it any more
+            if ti.static(particles.cracks):
+                particles.opening[p] = ti.Vector.zero(float, 2)
+
+
+def drop(sim: Simulation, before: Survey, dropped: Dropped) -> tuple[Survey, Dropped]:
+    """Take out what `before`, a survey of the particles as they are, found outside; the survey afterwards, and the sum.
+
+    Its energy counts as dissipated, so that kinetic + elastic + dissipated - work goes on as if it had stayed. Raises
+    UnstableRun when nothing is left.
+    """
+    volume = sim.particles.volume.to_numpy()
+    park(sim)
+    gone = (sim.particles.volume.to_numpy() == 0.0) & (volume != 0.0)
+    dropped = replace(
+        dropped,
+        count=dropped.count + int(gone.sum()),
+        mass=dropped.mass + sim.scene.rock.density * sim.J_start * float(volume[gone].sum(dtype=np.float64)),
+    )
+    if dropped.count == sim.particles.count:
+        raise UnstableRun("every particle has left the domain; enlarge it, or end the run earlier")
+    sort_particles(sim)
+    after = survey(sim)
+    # the confining pressure's work is a sum over particles too
+    energy = before.kinetic + before.elastic - before.work - (after.kinetic + after.elastic - after.work)
+    sim.ledger.released[0] += energy
+    return replace(after, dissipated=after.dissipated + energy), replace(
+        dropped, momentum=dropped.momentum + before.momentum - after.momentum, energy=dropped.energy + energy
+    )

@@ -1,0 +1,128 @@
+"""Particles copied out of their fields as they lie, and the snapshot that is made of the copy, by whoever needs it.
+
+A run hands copies to the process that paints: putting them in order takes three times as long as the copy, and the
+solver does not wait for it.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from rsmpm_ti.failure.failure_margin import margins
+from rsmpm_ti.fields.state import Simulation
+from rsmpm_ti.records.events import EventTable
+from rsmpm_ti.records.snapshot import Snapshot
+
+
+@dataclass(frozen=True)
+class Readout:
+    """A copy of the particles at one instant, in the order in which they lie and in the run's precision."""
+
+    time: float  # [s]
+    fields: dict[str, np.ndarray]  # of `Particles`, by name, those that the rock has; and what `margins` returns
+    failed: tuple[np.ndarray, np.ndarray]  # id and time [s] of the failure events, in no order
+    band: float  # width of the band over which a crack in a particle opens [m]
+
+    def snapshot(self) -> Snapshot:
+        """The particles in the order of their ids, without those that were dropped."""
+        fields = self.fields
+        ids = fields["id"]
+        order = np.argsort(ids, kind="stable")
+        order = order[fields["volume"][order] != 0.0]
+        n = len(order)
+
+        def column(name, dtype=np.float64):
+            return fields[name].take(order, axis=0).astype(dtype, copy=False)
+
+        u, packed = column("u"), column("sigma")
+        sigma = np.zeros((n, 3, 3))
+        places = ((0, 0), (1, 1), (2, 2), (0, 1), (1, 2), (2, 0))
+        for k in range(packed.shape[1]):
+            a, b = places[k]
+            sigma[:, a, b] = sigma[:, b, a] = packed[:, k]
+        sigma_1, sigma_3 = extreme_stresses(packed)
+        aperture, crack_angle = np.zeros(n), np.full(n, np.nan)
+        if "opening" in fields:
+            aperture = self.band * column("opening").max(axis=1)
+            begun = column("mode", np.int8) > 0
+            crack_angle[begun] = np.degrees(column("crack_angle")[begun]) % 180.0
+        return Snapshot(
+            time=self.time,
+            id=ids[order],
+            x=column("reference") + u,
+            displacement=u,
+            velocity=column("v"),
+            sigma=sigma,
+            sigma_1=sigma_1,
+            sigma_3=sigma_3,
+            volume=column("volume") * column("J"),
+            strength=column("strength") if "strength" in fields else np.ones(n),
+            failure_mode=self._modes(order),
+            failure_time=self._failure_times()[ids[order]],
+            margin=column("margin"),
+            governs=column("governs", np.int8),
+            damage=column("damage"),
+            aperture=aperture,
+            crack_angle=crack_angle,
+        )
+
+    def _modes(self, order: np.ndarray) -> np.ndarray:
+        """Rock with a direction may have begun to fail, which is its `mode`, and not have `failed`."""
+        name = "failed" if "failed" in self.fields else "mode"
+        return self.fields[name][order].astype(np.int8) if name in self.fields else np.zeros(len(order), dtype=np.int8)
+
+    def _failure_times(self) -> np.ndarray:
+        """By id; of a particle that failed twice, the later."""
+        ids, times = self.failed
+        of_id = np.full(len(self.fields["id"]), np.nan)
+        order = np.argsort(times, kind="stable")
+        of_id[ids[order]] = times[order]
+        return of_id
+
+
+def read_out(sim: Simulation, time: float) -> Readout:
+    """Copy what a snapshot is made of."""
+    particles, events = sim.particles, sim.events
+    names = ["id", "reference", "u", "v", "sigma", "volume", "J"]
+    names += ["mode"] * particles.breaks + ["strength"] * particles.varied
+    names += ["failed", "opening", "crack_angle"] * particles.cracks
+    fields = {name: getattr(particles, name).to_numpy() for name in names}
+    margin, governs, damage = margins(sim)
+    count = events.count[None]
+    return Readout(
+        time=time,
+        fields=fields | {"margin": margin, "governs": governs, "damage": damage},
+        failed=(events.id.to_numpy()[:count], events.time.to_numpy()[:count]),
+        band=sim.band if particles.cracks else 0.0,
+    )
+
+
+def take_snapshot(sim: Simulation, time: float) -> Snapshot:
+    """Copy the particles out, in the order of their ids, without those that were dropped."""
+    return read_out(sim, time).snapshot()
+
+
+def extreme_stresses(packed: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Largest and smallest principal stress of packed ones (see tensors.py), [n] each; in 2D by the closed form, in a
+    tenth of the time of an eigenvalue solver. What is not finite counts as 0 or as a very large number.
+    """
+    packed = np.nan_to_num(packed, posinf=1e300, neginf=-1e300)
+    if packed.shape[1] == 4:
+        xx, yy, zz, xy = packed.T
+        centre, radius = 0.5 * xx + 0.5 * yy, np.hypot(0.5 * xx - 0.5 * yy, xy)
+        return np.maximum(centre + radius, zz), np.minimum(centre - radius, zz)
+    xx, yy, zz, xy, yz, zx = packed.T
+    principal = np.linalg.eigvalsh(np.stack([xx, xy, zx, xy, yy, yz, zx, yz, zz], axis=1).reshape(-1, 3, 3))
+    return principal[:, 2], principal[:, 0]
+
+
+def read_events(sim: Simulation) -> EventTable:
+    """All events so far, sorted by time, then particle id, so that threads do not show."""
+    names = ["time", "x", "mode", "sigma_1", "sigma_3", "released", "id"]
+    if sim.events.directional:
+        names.append("crack_angle")
+    n = sim.events.count[None]
+    columns = {name: getattr(sim.events, name).to_numpy()[:n] for name in names}
+    order = np.lexsort((columns["id"], columns["time"]))
+    columns = {name: column[order] for name, column in columns.items()}
+    return EventTable(**columns, onset=float(sim.events.onset[None]))

@@ -1,0 +1,162 @@
+"""One look at all particles between steps: energies, speeds, health. The only reduction kernel."""
+
+from dataclasses import dataclass
+
+import numpy as np
+import taichi as ti
+
+from rsmpm_ti.failure.smeared_crack_stress import spring_energy
+from rsmpm_ti.fields.state import SCALARS, Simulation
+from rsmpm_ti.rock.after_failure import pressure_energy
+
+FIXED = len(SCALARS) + 2
+"""Places in the report before the momentum: the scalars and the two failure counts."""
+
+
+@dataclass(frozen=True)
+class Survey:
+    """Sums and extremes over particles, and the ledger so far. Energies [J] (per metre of thickness in 2D)."""
+
+    kinetic: float
+    elastic: float
+    speed: float  # largest [m/s]
+    J_min: float
+    J_max: float
+    J_intact: float  # largest of rock that has not failed, 0 where all has
+    sick: int  # particles with a non-finite value or outside the domain
+    sick_id: int  # one of them, -1 if none
+    outside: int  # particles outside the domain where those are to be dropped, which then are not sick
+    strays: int  # particles that left the cell they were sorted into
+    far_strays: int  # those among them that are more than half a cell beyond its row
+    momentum: np.ndarray  # [kg m/s], [dim]
+    impulse: np.ndarray  # of each boundary on the body since the start [N s], [boundaries, dim]
+    work: float  # of boundaries, body force and confining pressure since the start [J]
+    dissipated: float  # by failure and viscosity since the start [J]
+    failed_tension: int
+    failed_shear: int
+
+
+@ti.func
+def gaping(sim: ti.template(), p):
+    """Whether a particle lies between pieces that may part as far as they like: its J then warns of nothing.
+
+    That is a crack, or failed rock that carries nothing at its J; one that J still makes pull is no gap.
+    """
+    apart = False
+    if ti.static(sim.particles.cracks):
+        apart = sim.particles.mode[p] != 0
+    elif ti.static(sim.particles.breaks):
+        carried = sim.rock.after_failure.pressure(ti.static(sim.rock.elasticity.bulk), sim.particles.J[p])
+        apart = sim.particles.mode[p] != 0 and carried == 0.0
+    return apart
+
+
+@ti.func
+def left_domain(sim: ti.template(), xi):
+    """Whether a particle at grid coordinates xi is more than two cells beyond the domain: there stencils may end."""
+    left = False
+    for d in ti.static(range(sim.dim)):
+        left = left or xi[d] < 1.0 or xi[d] > sim.grid.nodes[d] - 2.0
+    return left
+
+
+@ti.kernel
+def _survey(sim: ti.template()):
+    """Fill sim.report; its fields first, the vector of all of them last, so that one copy brings them to Python."""
+    for k in range(1):
+        clear_report(sim, k)
+    particles, grid, rock, report = sim.particles, sim.grid, sim.rock, sim.report
+    ti.loop_config(serialize=sim.traversal.ordered)
+    for p in range(particles.count):
+        v = particles.v[p]
+        m_p = sim.density * particles.volume[p]
+        sigma, J = particles.sigma[p], particles.J[p]
+        stored, J_intact = J * rock.elasticity.energy(sigma), J
+        if ti.static(particles.breaks):
+            if particles.mode[p] != 0:
+                J_intact = 0.0
+                if ti.static(particles.cracks):
+                    stored += J * spring_energy(sim, p)
+                else:
+                    bulk = ti.static(rock.elasticity.bulk)
+                    stored = pressure_energy(rock.after_failure.pressure(bulk, J), bulk, J)
+        xi = grid.local(particles.reference[p] + particles.u[p])
+        sick = 0
+        if left_domain(sim, xi):
+            if ti.static(sim.drops):
+                report.outside[None] += 1.0
+            else:
+                sick = 1
+        for d in ti.static(range(sim.dim)):
+            if ti.math.isnan(v[d]) or ti.math.isinf(v[d]):
+                sick = 1
+            if ti.math.isnan(xi[d]):
+                sick = 1
+        for k in ti.static(range(sigma.n)):
+            if ti.math.isnan(sigma[k]) or ti.math.isinf(sigma[k]):
+                sick = 1
+        if sick == 1:
+            report.sick[None] += 1.0
+            report.sick_id[None] = ti.cast(particles.id[p], ti.f64)
+        else:
+            report.kinetic[None] += ti.cast(0.5 * m_p * v.dot(v), ti.f64)
+            report.elastic[None] += ti.cast(particles.volume[p] * stored, ti.f64)
+            if ti.static(sim.confined):  # the pressure's work: p times the volume that the bodies gave way
+                report.work[None] += ti.cast(sim.confinement * particles.volume[p] * (sim.J_start - J), ti.f64)
+            ti.atomic_max(report.speed[None], ti.cast(v.norm(), ti.f64))
+            ti.atomic_min(report.J_min[None], ti.cast(J, ti.f64))
+            ti.atomic_max(report.J_max[None], ti.cast(ti.select(gaping(sim, p), 1.0, J), ti.f64))
+            ti.atomic_max(report.J_intact[None], ti.cast(J_intact, ti.f64))
+            for d in ti.static(range(sim.dim)):
+                report.momentum[d][None] += ti.cast(m_p * v[d], ti.f64)
+        base = grid.base(xi, sim.shape)
+        if grid.key(base) != particles.key[p]:
+            report.strays[None] += 1.0
+            depth = xi[0] - sim.shape.shift - grid.base_of(particles.key[p])[0]
+            if depth < -0.5 or depth > 1.5:
+                report.far_strays[None] += 1.0
+    for b in range(sim.report.boundary_count):
+        for d in ti.static(range(sim.dim)):
+            sim.report.values[FIXED + sim.dim + b * sim.dim + d] = sim.ledger.impulse[b][d]
+        sim.report.work[None] += sim.ledger.work[b] + 0.5 * sim.ledger.latest[b]
+    for slot in sim.ledger.viscous:
+        sim.report.work[None] += sim.ledger.body_work[slot]
+        sim.report.dissipated[None] += sim.ledger.viscous[slot] + sim.ledger.released[slot]
+    for k in range(1):
+        collect(sim, k)
+
+
+@ti.func
+def clear_report(sim: ti.template(), k):
+    report = sim.report
+    for field in ti.static(report.sums):
+        field[None] = 0.0
+    report.J_min[None], report.sick_id[None] = 1e30, -1.0
+
+
+@ti.func
+def collect(sim: ti.template(), k):
+    report, events = sim.report, sim.events
+    for place, field in ti.static(enumerate(report.scalars)):
+        report.values[place] = field[None]
+    for mode in ti.static(range(2)):
+        report.values[FIXED - 2 + mode] = ti.cast(events.by_mode[mode + 1], ti.f64)
+    for d in ti.static(range(sim.dim)):
+        report.values[FIXED + d] = report.momentum[d][None]
+
+
+def survey(sim: Simulation) -> Survey:
+    """Survey the particles as they are now."""
+    _survey(sim)
+    values, dim = sim.report.values.to_numpy(), sim.dim
+    scalars = dict(zip(SCALARS, values, strict=False))
+    whole = {name: int(scalars.pop(name)) for name in ("sick", "sick_id", "outside", "strays", "far_strays")}
+    modes = values[len(SCALARS) : FIXED]
+    return Survey(
+        **scalars,
+        **whole,
+        failed_tension=int(modes[0]),
+        failed_shear=int(modes[1]),
+        momentum=values[FIXED : FIXED + dim],
+        impulse=values[FIXED + dim :].reshape(-1, dim),
+    )

@@ -1,0 +1,1 @@
+"""What a scene is: frozen data, checked once, read and written."""

@@ -1,0 +1,262 @@
+"""Find a scene, apply overrides, and say clearly what is wrong with either."""
+
+import contextlib
+import dataclasses
+import difflib
+import functools
+import importlib.util
+import inspect
+import operator
+import sys
+import traceback
+import types
+import typing
+from dataclasses import replace
+from pathlib import Path
+
+import rsmpm_ti
+from rsmpm_ti.checks import entry_kinds, fits, members, phrase
+from rsmpm_ti.errors import SceneError, short, shown
+from rsmpm_ti.spec.scene import Scene
+from rsmpm_ti.spec.scene_json import family_of, read_scene
+
+PACKAGE = Path(rsmpm_ti.__file__).parent
+SHIPPED = PACKAGE / "scenes"
+"""Where a wheel carries the scenes; a checkout has them in ./scenes."""
+
+
+def folders() -> list[Path]:
+    """Where scenes are looked for, in order."""
+    return [f for f in (Path("scenes"), SHIPPED, PACKAGE.parent / "scenes") if f.is_dir()]
+
+
+def available() -> dict[str, Path]:
+    """Scene name -> file; the first folder wins."""
+    found: dict[str, Path] = {}
+    for folder in folders():
+        for path in sorted(folder.glob("[a-z]*.py")):
+            found.setdefault(path.stem, path)
+    return found
+
+
+def find(name: str) -> Path:
+    """A path as given, else a scene by name."""
+    path = Path(name)
+    if path.suffix in (".py", ".json"):
+        if path.is_file():
+            return path
+        raise SceneError(f"scene file {short(name)} does not exist")
+    scenes = available()
+    if name not in scenes:
+        raise SceneError(
+            f"no scene named {shown(name)}; there are: {', '.join(sorted(scenes)) or 'none'} (or give a path)"
+        )
+    return scenes[name]
+
+
+def load_scene(name: str, *, quick: bool = False, settings: dict[str, str] | None = None, **overrides) -> Scene:
+    """Build a scene. `overrides` are keywords of its function; `settings` are texts as --set gives them, where a
+    dotted name reaches a field of the built Scene, and so does a field's own name that is no keyword. `quick` first
+    takes the file's QUICK keywords.
+
+    A .py scene is a program and is run; a .json scene is data and is not. Raises SceneError.
+    """
+    path, settings = find(name), dict(settings or {})
+    recorded = path.suffix == ".json"
+    function, parameters, quick_keywords = (None, {}, {}) if recorded else _function(path)
+    fields = {
+        key: settings.pop(key)
+        for key in list(settings)
+        if "." in key or (key in typing.get_type_hints(Scene) and key not in parameters)
+    }
+    if recorded:
+        if settings or overrides or quick:
+            raise SceneError("a recorded scene has no keywords; use dotted names, for example schedule.cfl=0.3")
+        scene = read_scene(path)
+    else:
+        with _naming(settings):
+            scene = _call(function, path, (quick_keywords if quick else {}) | overrides, settings)
+    for key, text in fields.items():
+        with _naming({key: text}):
+            scene = _with_field(scene, Scene, key, key.split("."), text)
+    return scene
+
+
+@contextlib.contextmanager
+def _naming(settings: dict[str, str]):
+    """Says which settings led to a refusal that names none of them: a keyword becomes fields of other names."""
+    try:
+        yield
+    except SceneError as error:
+        if not settings or any(short(key) in str(error) for key in settings):
+            raise
+        given = ", ".join(f"{short(key)}={short(text)}" for key, text in settings.items())
+        raise SceneError(f"{error} (set: {given})") from None
+
+
+def _load(path: Path):
+    spec = importlib.util.spec_from_file_location(f"rsmpm_ti_scene_{path.stem}", path)
+    module = importlib.util.module_from_spec(spec)
+    try:
+        spec.loader.exec_module(module)
+    except SceneError:
+        raise
+    except (Exception, SystemExit) as error:
+        line = next(
+            (
+                f.lineno
+                for f in reversed(traceback.extract_tb(error.__traceback__))
+                if Path(f.filename).resolve() == path.resolve()
+            ),
+            None,
+        )
+        place = f" line {line}" if line else ""
+        raise SceneError(f"{path}{place} cannot be loaded: {_said(error)}") from None
+    return module
+
+
+def _said(error: BaseException) -> str:
+    """What an exception of a scene file says, which may be too much, or nothing that can be shown."""
+    try:
+        return short(f"{type(error).__name__}: {error}")
+    except Exception:
+        return type(error).__name__
+
+
+def _function(path: Path):
+    """The function scene() of a file, its parameters, and the file's QUICK keywords."""
+    module = _load(path)
+    try:
+        parameters = inspect.signature(module.scene).parameters
+    except (AttributeError, TypeError, ValueError):
+        raise SceneError(f"{path} defines no function scene(); it must return a Scene") from None
+    quick = getattr(module, "QUICK", {})
+    if not (isinstance(quick, dict) and all(isinstance(key, str) for key in quick)):
+        raise SceneError(f"{path}: QUICK must be a dict of keywords of scene(), not {shown(quick)}")
+    return module.scene, parameters, quick
+
+
+def keywords_of(path: Path) -> dict[str, object]:
+    """Keyword -> default of a scene file's function. Raises SceneError for a file without one."""
+    _, parameters, _ = _function(path)
+    return {k: p.default for k, p in parameters.items()}
+
+
+def _call(function, path: Path, overrides: dict, settings: dict[str, str]) -> Scene:
+    parameters = inspect.signature(function).parameters
+    values = dict(overrides)
+    for key in (*overrides, *settings):
+        if key not in parameters:
+            fields = "; fields of the built scene are set by dotted names (schedule.cfl=0.3) or as order=usf"
+            raise SceneError(
+                _unknown(key, list(parameters), f"scene {path.stem}", fields, typing.get_type_hints(Scene))
+            )
+    for key, text in settings.items():
+        values[key] = _parse(key, text, _kind_of(parameters[key]))
+    try:
+        scene = function(**values)
+    except SceneError:
+        raise
+    except (Exception, SystemExit) as error:
+        raise SceneError(f"{path}: scene({short(str(values))}) failed: {_said(error)}") from None
+    if not isinstance(scene, Scene):
+        raise SceneError(f"{path}: scene() must return a Scene, not {type(scene).__name__}")
+    return scene
+
+
+def _unknown(key: str, names: list[str], owner: str, more: str = "", also=()) -> str:
+    close = difflib.get_close_matches(key[:100], [*names, *also], n=1)
+    hint = f"; did you mean {close[0]}?" if close else ""
+    return f"{owner} has no setting {shown(key)}; it has: {', '.join(names)}{more}{hint}"
+
+
+def _kind_of(parameter: inspect.Parameter):
+    """What a keyword takes, as an annotation: its own if that offers a choice, else by its default; a class may be any
+    of its kind."""
+    default = parameter.default
+    if isinstance(parameter.annotation, types.UnionType):
+        return parameter.annotation
+    if default is None or default is inspect.Parameter.empty:
+        return float | None
+    if isinstance(default, tuple):
+        return tuple[float, ...]
+    if dataclasses.is_dataclass(default):
+        return functools.reduce(operator.or_, family_of(type(default)))
+    return type(default)
+
+
+def _readings(text: str):
+    """What a text may mean, the narrowest first."""
+    if text.lower() in ("none", "true", "false"):
+        yield {"none": None, "true": True, "false": False}[text.lower()]
+    numbers = (float, int, lambda t: tuple(float(part) for part in t.strip("()").split(",") if part.strip()))
+    for read in numbers:
+        try:
+            yield read(text)
+        except ValueError:
+            pass
+    yield text
+
+
+def _parse(key: str, text: str, wanted):
+    """A text as what an annotation says: a number, a word, numbers separated by commas, or the name of a class."""
+    classes = {kind.__name__: kind for kind in members(wanted) if dataclasses.is_dataclass(kind)}
+    if text in classes:
+        try:
+            return classes[text]()
+        except TypeError as error:
+            raise SceneError(
+                f"{key}={short(text)} is refused: it needs parameters ({error}); build it in a scene file"
+            ) from None
+    for value in _readings(text):
+        if fits(value, wanted):
+            return value
+    raise SceneError(f"{short(key)}={short(text)} is refused: it must be {phrase(wanted)}")
+
+
+def _with_field(owner, kind, key: str, path: list[str], text: str):
+    """A copy of frozen data with one nested value replaced; `kind` is the annotation of `owner`, bodies.0.seeding
+    indexes a tuple."""
+    if not path:
+        return _parse(key, text, kind)
+    name, rest = path[0], path[1:]
+    if isinstance(owner, tuple):
+        if name not in map(str, range(len(owner))):
+            raise SceneError(f"{short(key)}: {shown(name)} is no index; there are {len(owner)} entries, counted from 0")
+        k = int(name)
+        return (*owner[:k], _with_field(owner[k], entry_kinds(kind, len(owner))[k], key, rest, text), *owner[k + 1 :])
+    if not dataclasses.is_dataclass(owner):
+        raise SceneError(f"{short(key)}: {shown(name)} is no field of a {type(owner).__name__}")
+    names = [f.name for f in dataclasses.fields(owner)]
+    if name not in names:
+        raise SceneError(_unknown(name, names, type(owner).__name__))
+    value = _with_field(getattr(owner, name), typing.get_type_hints(type(owner))[name], key, rest, text)
+    try:
+        return replace(owner, **{name: value})
+    except SceneError:
+        raise
+    except (TypeError, ValueError, AttributeError, ArithmeticError) as error:
+        raise SceneError(
+            f"{short(key)}={short(text)} is refused: {type(owner).__name__} cannot be built: {error}"
+        ) from None
+
+
+def scene_name(name: str) -> str:
+    """The name under which a run is filed."""
+    path = Path(name)
+    return path.parent.name if path.name == "scene.json" else path.stem
+
+
+def machine() -> dict[str, str]:
+    """Versions and machine, for the record; no host name."""
+    import importlib.metadata
+    import platform
+
+    packages = ("taichi", "numpy", "scipy", "meshio", "matplotlib", "imageio")
+    versions = {}
+    for name in packages:
+        try:
+            versions[name] = importlib.metadata.version(name)
+        except importlib.metadata.PackageNotFoundError:  # a movie is not written without imageio, but a run goes on
+            versions[name] = "not installed"
+    return {"python": sys.version.split()[0], **versions, "system": platform.system(), "machine": platform.machine()}

@@ -1,0 +1,197 @@
+"""Regions of space that bodies fill: `contains(x)` in NumPy. Lengths in metres, angles in degrees.
+
+Combine with `Union` and `Difference`. A slit is a region like any other; what makes it a flaw is that the particles
+in it are removed and that its faces really separate, which `slit_check.slit_bridge` checks.
+"""
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from rsmpm_ti.checks import LEAST, check_kinds, check_positive
+from rsmpm_ti.errors import refuse
+
+FARTHEST = 1e9
+"""Largest coordinate and length [m]: beyond it a specimen is a mistake, and squares and node numbers overflow."""
+
+DEEPEST, MOST_PARTS = 20, 10_000
+"""Regions within regions, and all of them: every point of a specimen is asked of each."""
+
+
+def check_coordinates(name: str, values: tuple[float, ...]) -> None:
+    """Refuse what is no place in 2D or 3D."""
+    if len(values) not in (2, 3) or not all(abs(x) <= FARTHEST for x in values):
+        raise refuse(name, values, f"2 or 3 finite coordinates in metres, of size at most {FARTHEST:g}")
+
+
+def _check_length(name: str, value: float) -> None:
+    check_positive(name, value, "length in metres", most=FARTHEST)
+
+
+def _dimensions(parts: tuple) -> set[int]:
+    """The dimensions of regions; a slit, which goes through the thickness in 3D, has none of its own."""
+    return {len(part.bounds()[0]) for part in parts if not isinstance(part, Slit)}
+
+
+def _parts(region) -> tuple:
+    """The regions that a region is made of."""
+    if isinstance(region, Union):
+        return region.parts
+    return (region.whole, *region.removed) if isinstance(region, Difference) else ()
+
+
+def _check_nest(name: str, parts: tuple) -> None:
+    level, count = parts, len(parts)
+    for _ in range(DEEPEST):
+        level = tuple(inner for part in level for inner in _parts(part))
+        count += len(level)
+    if level or count > MOST_PARTS:
+        raise refuse(name, parts, f"at most {MOST_PARTS} regions, nested at most {DEEPEST} deep")
+
+
+@dataclass(frozen=True, kw_only=True)
+class Box:
+    """Axis-aligned box between two corners."""
+
+    lower: tuple[float, ...]
+    upper: tuple[float, ...]
+
+    def __post_init__(self):
+        check_kinds("box", self)
+        check_coordinates("box.lower", self.lower)
+        check_coordinates("box.upper", self.upper)
+        edges = [b - a for a, b in zip(self.lower, self.upper, strict=False)]
+        if len(self.lower) != len(self.upper) or not min(edges) >= LEAST:
+            raise refuse("box.upper", self.upper, f"above box.lower = {self.lower} by {LEAST:g} m on every axis")
+
+    def contains(self, x: np.ndarray) -> np.ndarray:
+        """x [n, dim] -> bool [n]."""
+        return np.all((x > np.array(self.lower)) & (x < np.array(self.upper)), axis=1)
+
+    def bounds(self) -> tuple[np.ndarray, np.ndarray]:
+        return np.array(self.lower), np.array(self.upper)
+
+
+@dataclass(frozen=True, kw_only=True)
+class Disc:
+    """Disc in 2D, ball in 3D."""
+
+    centre: tuple[float, ...]
+    radius: float
+
+    def __post_init__(self):
+        check_kinds("disc", self)
+        check_coordinates("disc.centre", self.centre)
+        _check_length("disc.radius", self.radius)
+
+    def contains(self, x: np.ndarray) -> np.ndarray:
+        return np.sum((x - np.array(self.centre)) ** 2, axis=1) < self.radius**2
+
+    def bounds(self) -> tuple[np.ndarray, np.ndarray]:
+        return np.array(self.centre) - self.radius, np.array(self.centre) + self.radius
+
+
+@dataclass(frozen=True, kw_only=True)
+class Slit:
+    """A straight flaw: a rectangle `length` x `width` at `angle` degrees from +x, through the thickness in 3D.
+
+    `rounded`: its ends are half circles, as a saw or a drill leaves them; `length` is from end to end either way.
+    """
+
+    centre: tuple[float, ...]
+    length: float
+    width: float
+    angle: float
+    rounded: bool = False
+
+    def __post_init__(self):
+        check_kinds("slit", self)
+        check_coordinates("slit.centre", self.centre)
+        _check_length("slit.length", self.length)
+        _check_length("slit.width", self.width)
+        if not abs(self.angle) <= 360.0:
+            raise refuse("slit.angle", self.angle, "in [-360, 360] degrees")
+        if self.width > self.length:
+            raise refuse("slit.width", self.width, f"at most slit.length = {self.length} m")
+
+    @property
+    def direction(self) -> np.ndarray:
+        """Unit vector along the flaw in the x-y plane, [2]."""
+        return np.array([math.cos(math.radians(self.angle)), math.sin(math.radians(self.angle))])
+
+    def frame(self, x: np.ndarray) -> np.ndarray:
+        """Coordinates along and across the flaw [m]; x [n, dim] -> [n, 2]."""
+        t = self.direction
+        d = x[:, :2] - np.array(self.centre[:2])
+        return np.stack([d @ t, d @ np.array([-t[1], t[0]])], axis=1)
+
+    def contains(self, x: np.ndarray) -> np.ndarray:
+        s = np.abs(self.frame(x))
+        if self.rounded:
+            beyond = np.maximum(s[:, 0] - 0.5 * (self.length - self.width), 0.0)
+            return np.hypot(beyond, s[:, 1]) < 0.5 * self.width
+        return (s[:, 0] < 0.5 * self.length) & (s[:, 1] < 0.5 * self.width)
+
+    def bounds(self) -> tuple[np.ndarray, np.ndarray]:
+        t = np.abs(self.direction)
+        half = 0.5 * (self.length * t + self.width * t[::-1])
+        return np.array(self.centre[:2]) - half, np.array(self.centre[:2]) + half
+
+
+@dataclass(frozen=True, kw_only=True)
+class Union:
+    """What lies in any of the parts."""
+
+    parts: "tuple[Region, ...]"
+
+    def __post_init__(self):
+        check_kinds("union", self)
+        _check_nest("union.parts", self.parts)
+        if not self.parts or len({len(part.bounds()[0]) for part in self.parts}) > 1:
+            raise refuse("union.parts", self.parts, "at least one region, and all of one dimension")
+
+    def contains(self, x: np.ndarray) -> np.ndarray:
+        return np.any([part.contains(x) for part in self.parts], axis=0)
+
+    def bounds(self) -> tuple[np.ndarray, np.ndarray]:
+        lower, upper = zip(*(part.bounds() for part in self.parts), strict=True)
+        return np.min(lower, axis=0), np.max(upper, axis=0)
+
+
+@dataclass(frozen=True, kw_only=True)
+class Difference:
+    """What lies in `whole` and in none of `removed`."""
+
+    whole: "Region"
+    removed: "tuple[Region, ...]"
+
+    def __post_init__(self):
+        check_kinds("difference", self)
+        _check_nest("difference.whole", (self.whole,))
+        _check_nest("difference.removed", self.removed)
+        if len(_dimensions((self.whole, *self.removed))) > 1:
+            raise refuse("difference.removed", self.removed, "regions of the dimension of difference.whole")
+
+    def contains(self, x: np.ndarray) -> np.ndarray:
+        inside = self.whole.contains(x)
+        for part in self.removed:
+            inside &= ~part.contains(x)
+        return inside
+
+    def bounds(self) -> tuple[np.ndarray, np.ndarray]:
+        return self.whole.bounds()
+
+
+Region = Box | Disc | Slit | Union | Difference
+"""What a recorded scene or the command line may give as a region; a scene file may bring its own."""
+
+
+def slits_of(region) -> tuple[Slit, ...]:
+    """Every slit cut from a region, however nested."""
+    if isinstance(region, Union):
+        return tuple(slit for part in region.parts for slit in slits_of(part))
+    if isinstance(region, Difference):
+        cuts = tuple(part for part in region.removed if isinstance(part, Slit))
+        return slits_of(region.whole) + cuts
+    return ()

@@ -1,0 +1,335 @@
+"""What a scene is: frozen data, checked once, here. Kernels trust it. SI units; angles in degrees.
+
+(`rsmpm_ti.scene` is the command line: it runs as `__main__`, and a dataclass defined there would exist twice.)
+"""
+
+import math
+from dataclasses import dataclass, field, replace
+from functools import cached_property
+
+import numpy as np
+
+from rsmpm_ti.checks import check_kinds, check_positive, check_size
+from rsmpm_ti.errors import SceneError, refuse
+from rsmpm_ti.method.shape import Gimp, Linear, QuadraticBSpline
+from rsmpm_ti.method.time_step import LEAST_CFL, MOST, check_step
+from rsmpm_ti.method.transfer import Apic, PicFlip
+from rsmpm_ti.rock.criteria import Unbreakable
+from rsmpm_ti.rock.heterogeneity import check_scale
+from rsmpm_ti.rock.rock import Rock
+from rsmpm_ti.spec.boundaries import Fixed, Platen, Wall
+from rsmpm_ti.spec.confinement import check_confined_rock, check_confinement
+from rsmpm_ti.spec.loading_start import Affine, AtRest, Press, Ramp
+from rsmpm_ti.spec.mass_scaling import LARGEST, estimate
+from rsmpm_ti.spec.regions import FARTHEST, Region, check_coordinates, slits_of
+from rsmpm_ti.spec.scene_checks import check_bodies, check_cracks, check_loading, check_memory, check_motion
+from rsmpm_ti.spec.seeding import Jittered, Lattice, Seeds
+from rsmpm_ti.spec.slit_check import check_slit
+
+MOST_BOUNDARIES, MOST_BODIES = 32, 5000
+
+FINEST = 1e-9
+"""Smallest cell [m]: below it rock is no continuum."""
+
+FINEST_SHARE = 1e-9
+"""Smallest cell over the largest coordinate: round-off of a particle's place is then 1e-7 of a cell."""
+
+GROWTH = 4
+"""Lengths of a domain's longest edge by which it may grow on every side: each asks for pointers to empty blocks."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Domain:
+    """The background grid: a box of cells of edge dx [m]; `grid` is 'dense', 'sparse' or 'auto' (by occupancy).
+
+    A particle that flies more than two cells beyond it ends the run; with outside = 'drop' it is taken out of it; with
+    'grow' the grid, which must then be sparse, grows to where particles are, up to GROWTH domain lengths on every side.
+    """
+
+    lower: tuple[float, ...]
+    upper: tuple[float, ...]
+    dx: float
+    grid: str = "dense"
+    outside: str = "stop"
+
+    def __post_init__(self):
+        check_kinds("domain", self)
+        check_positive("domain.dx", self.dx, "cell size in metres", least=FINEST, most=FARTHEST)
+        if len(self.lower) not in (2, 3) or len(self.lower) != len(self.upper):
+            raise refuse("domain.upper", self.upper, "2 or 3 coordinates, as many as domain.lower")
+        check_coordinates("domain.lower", self.lower)
+        check_coordinates("domain.upper", self.upper)
+        edges = [float(b) - float(a) for a, b in zip(self.lower, self.upper, strict=True)]
+        if not all(edge >= self.dx for edge in edges):
+            allowed = f"at least one cell, dx = {self.dx}, above domain.lower = {self.lower}"
+            raise refuse("domain.upper", self.upper, allowed)
+        if self.grid not in ("dense", "sparse", "auto"):
+            raise refuse("domain.grid", self.grid, "'dense', 'sparse' or 'auto'")
+        if self.outside not in ("stop", "drop", "grow"):
+            raise refuse("domain.outside", self.outside, "'stop', 'drop' or 'grow'")
+        if self.outside == "grow" and self.grid == "dense":
+            allowed, remedy = "'stop' or 'drop' with a dense grid", "set domain.grid = 'sparse' to let it grow"
+            raise refuse("domain.outside", self.outside, allowed, remedy)
+        far = self.farthest
+        if not self.dx >= FINEST_SHARE * far:
+            allowed = f"at least {FINEST_SHARE * far:.4g} m, {FINEST_SHARE:g} of the largest coordinate"
+            raise refuse("domain.dx", self.dx, allowed, "move the domain to the origin: places are lost to round-off")
+        nodes = math.prod(edge / float(self.dx) + 1.0 for edge in edges)
+        if nodes > MOST:
+            raise refuse("domain.dx", self.dx, f"such that the grid has at most {MOST:.3g} nodes, not {nodes:.3g}")
+
+    @property
+    def dim(self) -> int:
+        return len(self.lower)
+
+    @property
+    def room(self) -> int:
+        """Cells beyond the domain, on every side, into which the grid may grow: as many as 32-bit numbers count."""
+        if self.outside != "grow":
+            return 0
+        edges = [(b - a) / self.dx for a, b in zip(self.lower, self.upper, strict=True)]
+        room = math.ceil(GROWTH * max(edges))
+        while room and math.prod(edge + 2.0 * room + 10.0 for edge in edges) > MOST:
+            room //= 2
+        return room
+
+    @property
+    def farthest(self) -> float:
+        """Largest coordinate that a particle may have [m]."""
+        return max(map(abs, (*self.lower, *self.upper))) + self.room * self.dx
+
+
+@dataclass(frozen=True, kw_only=True)
+class Body:
+    """Material that fills a region. Initial velocity [m/s] and, in the x-y plane, spin [rad/s] about its centre."""
+
+    region: Region
+    seeding: Lattice | Jittered = Lattice()
+    velocity: tuple[float, ...] | None = None
+    spin: float = 0.0
+
+    def __post_init__(self):
+        check_kinds("body", self)
+        check_size("body.velocity", self.velocity or (), "components in m/s")
+        check_size("body.spin", (self.spin,), "a rate in rad/s")
+
+
+@dataclass(frozen=True, kw_only=True)
+class Loading:
+    """What drives the scene.
+
+    time_scale k multiplies the density by k^2 (mass scaling), so a quasi-static run takes 1/k of the steps. 'auto' is
+    the largest k at which inertia is expected to make up at most `quasi_static` of the load at first failure: see
+    `mass_scaling.py`, and `Scene.time_scale` for the number.
+    `width` is the loaded length [m] (area [m^2] in 3D) by which platen forces become nominal stress.
+    body_force is an acceleration [m/s^2]; mass scaling leaves the force it makes unchanged. `force_field` is one that
+    depends on place and time: an object with a ti.func `acceleration(X, t)` of a particle's initial position [m] and
+    the time [s]. A scene file brings its own, so a scene with one cannot be run again from its record.
+    confinement is a pressure [Pa] on every free surface, in which bodies start at rest (see `confinement.py`).
+    """
+
+    boundaries: tuple[Platen | Wall | Fixed, ...] = ()
+    start: Affine | Ramp | Press | AtRest = AtRest()
+    time_scale: float | str = 1.0
+    quasi_static: float = 0.01
+    body_force: tuple[float, ...] | None = None
+    force_field: object | None = None
+    width: float | None = None
+    confinement: float = 0.0
+
+    def __post_init__(self):
+        check_kinds("loading", self)
+        if len(self.boundaries) > MOST_BOUNDARIES:
+            allowed = f"at most {MOST_BOUNDARIES} of them, as every kernel holds code for each"
+            raise refuse("loading.boundaries", self.boundaries, allowed)
+        number = not isinstance(self.time_scale, str) and 1.0 <= self.time_scale <= LARGEST
+        if not (number or self.time_scale == "auto"):
+            allowed = f"in [1, {LARGEST:g}] or 'auto'"
+            raise refuse("loading.time_scale", self.time_scale, allowed, "1 is the true density")
+        if not 1e-6 <= self.quasi_static <= 1.0:
+            raise refuse("loading.quasi_static", self.quasi_static, "in [1e-6, 1]", "it is a share of the load")
+        check_size("loading.body_force", self.body_force or (), "components in m/s^2")
+        if self.force_field is not None and not callable(getattr(self.force_field, "acceleration", None)):
+            raise refuse("loading.force_field", self.force_field, "an object with a ti.func acceleration(X, t)")
+        if self.width is not None:
+            check_positive("loading.width", self.width, "length in metres (area in 3D)")
+        check_confinement(self.confinement)
+
+    @property
+    def platens(self) -> tuple[Platen, Platen] | None:
+        """(lower, upper) platen of the loading axis, if there are two that face each other."""
+        for lower in self.boundaries:
+            for upper in self.boundaries:
+                same_axis = isinstance(lower, Platen) and isinstance(upper, Platen) and lower.axis == upper.axis
+                if same_axis and (lower.side, upper.side) == ("lower", "upper"):
+                    return lower, upper
+        return None
+
+    @property
+    def height(self) -> float:
+        """Distance between the platens [m]."""
+        lower, upper = self.platens
+        return upper.position - lower.position
+
+    @property
+    def strain_rate(self) -> float:
+        """Nominal axial strain rate [1/s], compression positive."""
+        lower, upper = self.platens
+        return (lower.speed - upper.speed) / self.height
+
+
+@dataclass(frozen=True, kw_only=True)
+class Schedule:
+    """How long, and in what steps. Give `strain_end` (platen strain, compression positive) or `t_end` [s].
+
+    dt = cfl dx/c_p unless `dt` [s] is given. `rows` is about how many rows the history gets. adaptive: steps shrink as
+    particles move and swell, dt c_p/(c + |v|), for impacts; the number of steps is then not known beforehand.
+    """
+
+    strain_end: float | None = None
+    t_end: float | None = None
+    cfl: float = 0.5
+    dt: float | None = None
+    rows: int = 1000
+    adaptive: bool = False
+
+    def __post_init__(self):
+        check_kinds("schedule", self)
+        if (self.strain_end is None) == (self.t_end is None):
+            raise SceneError("schedule: give exactly one of strain_end (platen strain) and t_end (seconds)")
+        for name in ("t_end", "dt"):
+            value = getattr(self, name)
+            if value is not None:
+                check_positive(f"schedule.{name}", value, "time in seconds", least=1e-30)
+        if self.strain_end is not None and not 0.0 < abs(self.strain_end) < 0.5:
+            raise refuse("schedule.strain_end", self.strain_end, "a strain of size in (0, 0.5)")
+        check_positive("schedule.cfl", self.cfl, "share of the time a wave needs for one cell", LEAST_CFL, 1e3)
+        if not 1 <= self.rows <= 1_000_000:
+            raise refuse("schedule.rows", self.rows, "a whole number from 1 to 1 000 000")
+
+
+@dataclass(frozen=True, kw_only=True)
+class Output:
+    """What is written. Frames come at equal strain (or time) intervals and when failed particles jump.
+
+    stress_limit: symmetric colour limit [Pa]; by default 1.5 times the tensile strength. margin: also frames of the
+    margin to failure.
+    """
+
+    frames: int = 60
+    movie: bool = True
+    vtu: int = 10
+    painter: str = "raster"
+    margin: bool = False
+    stress_limit: float | None = None
+
+    def __post_init__(self):
+        check_kinds("output", self)
+        for name in ("frames", "vtu"):
+            value = getattr(self, name)
+            if not 0 <= value <= 10_000:
+                raise refuse(f"output.{name}", value, "a whole number from 0 to 10 000")
+        if self.painter not in ("raster", "ggui"):
+            raise refuse("output.painter", self.painter, "'raster' or 'ggui'")
+        if self.stress_limit is not None:
+            check_positive("output.stress_limit", self.stress_limit, "stress in Pa")
+
+
+@dataclass(frozen=True, kw_only=True)
+class Scene:
+    """One numerical experiment, complete. One rock per scene; 2D is plane strain unless its rock says otherwise."""
+
+    title: str
+    domain: Domain
+    bodies: tuple[Body, ...]
+    rock: Rock
+    loading: Loading
+    schedule: Schedule
+    shape: Linear | Gimp | QuadraticBSpline = QuadraticBSpline()
+    transfer: PicFlip | Apic = PicFlip()
+    order: str = "musl"
+    output: Output = field(default_factory=Output)
+
+    def __post_init__(self):
+        check_kinds("scene", self)
+        if len(self.title) > 200 or not self.title.isprintable():
+            raise refuse("scene.title", self.title, "at most 200 printable characters in one line")
+        if not 0 < len(self.bodies) <= MOST_BODIES:
+            few = f"has {len(self.bodies)} entries" if self.bodies else "is empty"
+            raise SceneError(f"scene.bodies {few}: give at least one Body, at most {MOST_BODIES}")
+        if self.order not in ("musl", "usf", "usl"):
+            raise refuse("scene.order", self.order, "'musl', 'usf' or 'usl'")
+        if self.order == "usl" and isinstance(self.shape, Linear):
+            raise SceneError(
+                "scene.order = 'usl' with Linear shape functions is refused: its critical step tends to 0 when a "
+                "particle has just entered an empty cell; use 'musl' or 'usf', or another shape function"
+            )
+        if self.dim == 3 and self.rock.elasticity.plane_stress:
+            raise refuse("rock.elasticity.plane_stress", True, "False in 3D", "a plate is a 2D scene")
+        if self.domain.outside == "grow" and self.rock.averaging.acts:
+            remedy = "enlarge the domain: averages lie on a dense grid"
+            raise refuse("domain.outside", "grow", "'stop' or 'drop' in rock with rock.averaging", remedy)
+        check_confined_rock(self.loading.confinement, self.rock.elasticity)
+        check_bodies(self)
+        check_loading(self)
+        check_cracks(self.rock, self.shape, self.dim, self.domain.dx)
+        for body in self.bodies:
+            volume = (self.domain.dx / body.seeding.particles_per_axis) ** self.dim
+            check_scale(self.rock.heterogeneity, volume, self.dim)
+        check_step(self)
+        check_motion(self)
+
+    @property
+    def dim(self) -> int:
+        return self.domain.dim
+
+    @cached_property
+    def time_scale(self) -> float:
+        """The number: `loading.time_scale`, or what 'auto' comes to. Raises SceneError where 'auto' has no meaning."""
+        if self.loading.time_scale == "auto":
+            return estimate(self).largest(self.loading.quasi_static)
+        return self.loading.time_scale
+
+    @property
+    def wave_speed(self) -> float:
+        """P-wave speed with mass scaling [m/s]."""
+        return self.rock.wave_speed(self.time_scale)
+
+    @property
+    def density(self) -> float:
+        """Density with mass scaling [kg/m^3]."""
+        return self.rock.density * self.time_scale**2
+
+    @property
+    def dt(self) -> float:
+        return self.schedule.dt or self.schedule.cfl * self.domain.dx / self.wave_speed
+
+    @property
+    def t_end(self) -> float:
+        if self.schedule.t_end is not None:
+            return self.schedule.t_end
+        at_full_speed = self.schedule.strain_end / self.loading.strain_rate
+        start = self.loading.start
+        return start.duration(at_full_speed) if isinstance(start, Ramp) else at_full_speed
+
+    @property
+    def steps(self) -> int:
+        """Of this dt: with an adaptive schedule they become more."""
+        return max(1, math.ceil(self.t_end / self.dt - 1e-9))
+
+    def particles(self) -> list[Seeds]:
+        """Initial positions and volumes of each body's particles; refuses empty bodies and glued slits."""
+        check_memory(self)
+        origin = np.array(self.domain.lower, dtype=float)
+        seeds = []
+        for k, body in enumerate(self.bodies):
+            for slit in slits_of(body.region):
+                check_slit(body.region, slit, body.seeding, self.shape, self.domain.dx, origin)
+            seeds.append(body.seeding.fill(body.region, origin, self.domain.dx))
+            if len(seeds[-1].x) == 0:
+                raise SceneError(f"bodies[{k}].region holds no particle: it is smaller than dx = {self.domain.dx} m")
+        return seeds
+
+    def elastic(self) -> "Scene":
+        """The same scene without failure."""
+        return replace(self, rock=replace(self.rock, criterion=Unbreakable()))

@@ -1,0 +1,181 @@
+"""Whether the parts of a scene fit each other: bodies, loading and what moves at the start.
+
+Everything is arithmetic on the parts; nothing is seeded. Each check raises SceneError, in one line.
+"""
+
+import math
+import os
+
+import numpy as np
+
+from rsmpm_ti.errors import SceneError, refuse, shown
+from rsmpm_ti.method.shape import Gimp
+from rsmpm_ti.method.time_step import MOST
+from rsmpm_ti.spec.loading_start import Affine, Press, Ramp
+from rsmpm_ti.spec.mass_scaling import LEAST_TRANSITS
+
+FASTEST = 0.4
+"""Largest way of a body or a boundary in one step [cells]: what a step may do to a particle (`advance.SAFE_CELLS`)."""
+
+SINGLE_SHARE = 1e-5
+"""Smallest cell over the largest coordinate in single precision: places are then rounded to 0.6 % of a cell."""
+
+BYTES_PER_PARTICLE, BYTES_PER_NODE = 200, 72
+"""Memory of the fields of a 2D scene with viscosity and failure, f64."""
+
+
+def check_bodies(scene) -> None:
+    lower, upper = np.array(scene.domain.lower), np.array(scene.domain.upper)
+    count = 0.0
+    for k, body in enumerate(scene.bodies):
+        low, high = body.region.bounds()
+        if len(low) != scene.dim:
+            raise SceneError(f"bodies[{k}].region has {len(low)} dimensions, domain has {scene.dim}")
+        slack = 1e-9 * (upper - lower)
+        if np.any(low < lower - slack) or np.any(high > upper + slack):
+            raise SceneError(
+                f"bodies[{k}].region from {low.tolist()} to {high.tolist()} m lies outside the domain from "
+                f"{list(scene.domain.lower)} to {list(scene.domain.upper)} m; enlarge the domain or move the body, "
+                f"{shown(body.region)}"
+            )
+        count += math.prod((high - low) / scene.domain.dx * body.seeding.particles_per_axis)
+        if body.velocity is not None and len(body.velocity) != scene.dim:
+            raise refuse(f"bodies[{k}].velocity", body.velocity, f"{scene.dim} components in m/s")
+        if isinstance(scene.shape, Gimp) and not math.isclose(
+            scene.shape.half_width, 0.5 / body.seeding.particles_per_axis
+        ):
+            fitting = f"{0.5 / body.seeding.particles_per_axis} for this seeding"
+            remedy = "particle domains would overlap or leave gaps"
+            raise refuse("shape.half_width", scene.shape.half_width, fitting, remedy)
+    if count > MOST:
+        most = f"such that bodies have at most {MOST:.3g} particles, not {count:.3g}"
+        raise refuse("domain.dx", scene.domain.dx, most)
+
+
+def check_memory(scene) -> None:
+    """Refuse what this machine cannot hold, before its particles are seeded."""
+    held = physical_memory()
+    count = 0.0
+    for body in scene.bodies:
+        low, high = body.region.bounds()
+        count += math.prod((high - low) / scene.domain.dx * body.seeding.particles_per_axis)
+    needed = BYTES_PER_PARTICLE * count
+    if held and needed > held:
+        allowed = f"such that {count:.3g} particles, about {needed / 1e9:.3g} GB, fit in the {held / 1e9:.3g} GB here"
+        raise refuse("domain.dx", scene.domain.dx, allowed, "or take fewer particles_per_axis")
+
+
+def check_precision(scene, precision: str) -> None:
+    """Refuse single precision where it cannot tell places within a cell: it rounds them to 6e-8 of a coordinate."""
+    far = scene.domain.farthest
+    if precision == "f32" and not scene.domain.dx >= SINGLE_SHARE * far:
+        allowed = f"'f64' where dx is less than {SINGLE_SHARE:g} of the largest coordinate, {far:g} m"
+        raise refuse("precision", precision, allowed, "or move the domain to the origin")
+
+
+def physical_memory() -> int:
+    """Bytes of memory of this machine; 0 where the system does not say."""
+    try:
+        return os.sysconf("SC_PAGE_SIZE") * os.sysconf("SC_PHYS_PAGES")
+    except (AttributeError, OSError, ValueError):
+        return 0
+
+
+def check_loading(scene) -> None:
+    loading, domain = scene.loading, scene.domain
+    if loading.body_force is not None and len(loading.body_force) != scene.dim:
+        raise refuse("loading.body_force", loading.body_force, f"{scene.dim} components in m/s^2")
+    for k, boundary in enumerate(loading.boundaries):
+        if boundary.axis >= scene.dim:
+            raise refuse(f"boundaries[{k}].axis", boundary.axis, f"below the dimension {scene.dim}")
+        lower, upper = domain.lower[boundary.axis], domain.upper[boundary.axis]
+        slack = 0.5 * domain.dx
+        if not lower - slack <= boundary.position <= upper + slack:
+            allowed = f"in the domain, along axis {boundary.axis} in [{lower}, {upper}] m"
+            raise refuse(f"boundaries[{k}].position", boundary.position, allowed)
+        span = getattr(boundary, "span", None)
+        if span is not None:
+            across = 1 if boundary.axis == 0 else 0
+            if not (span[0] < domain.upper[across] and span[1] > domain.lower[across]):
+                edges = f"[{domain.lower[across]}, {domain.upper[across]}] m"
+                raise refuse(f"boundaries[{k}].span", span, f"an interval that meets the domain, {edges}")
+        cells = (boundary.position - domain.lower[boundary.axis]) / domain.dx
+        if abs(cells - round(cells)) > 1e-3:
+            allowed = f"on a plane of grid nodes along axis {boundary.axis}"
+            nearest = f"the nearest is {domain.lower[boundary.axis] + round(cells) * domain.dx:.9g} m"
+            raise refuse(f"boundaries[{k}].position", boundary.position, allowed, nearest)
+    if scene.schedule.strain_end is not None or isinstance(loading.start, Affine):
+        if loading.platens is None:
+            needed = "two platens that face each other in loading.boundaries"
+            raise SceneError(f"strain_end and the Affine start need {needed}; give t_end")
+        if loading.width is None:
+            raise SceneError("loading.width is missing: platen forces need a loaded width to become stress")
+    if loading.platens and not loading.height > 0.0:
+        upper = loading.boundaries.index(loading.platens[1])
+        raise refuse(f"boundaries[{upper}].position", loading.platens[1].position, "above the lower platen's")
+    if scene.schedule.strain_end is not None and not loading.strain_rate * scene.schedule.strain_end > 0.0:
+        sign = f"of the sign of the platens' strain rate, lower speed less upper speed, {loading.strain_rate:.6g} 1/s"
+        raise refuse("schedule.strain_end", scene.schedule.strain_end, sign)
+    if isinstance(loading.start, Press) and scene.schedule.strain_end is not None:
+        raise SceneError("start = Press stops the platens itself: give t_end, hold included, no strain_end")
+    if isinstance(loading.start, (Ramp, Press)) and loading.platens:
+        transits = loading.start.time * scene.wave_speed / loading.height
+        if transits < LEAST_TRANSITS * (1.0 - 1e-9):
+            least = f"at least {LEAST_TRANSITS * loading.height / scene.wave_speed:.4g} s, 5 wave transits"
+            raise refuse("start.time", loading.start.time, least)
+
+
+def check_motion(scene) -> None:
+    """Nothing may start faster than a step can follow."""
+    most = FASTEST * scene.domain.dx / scene.dt
+    allowed = f"such that a step of {scene.dt:.4g} s moves nothing by more than {FASTEST:g} cells, {most:.4g} m/s"
+    for k, boundary in enumerate(scene.loading.boundaries):
+        if not abs(boundary.speed) <= most:
+            raise refuse(f"boundaries[{k}].speed", boundary.speed, allowed)
+    for k, body in enumerate(scene.bodies):
+        low, high = body.region.bounds()
+        flight, rim = math.hypot(*(body.velocity or ())), abs(body.spin) * 0.5 * math.hypot(*(high - low)[:2])
+        if not flight + rim <= most:
+            name = "velocity" if flight >= rim else "spin"
+            raise refuse(f"bodies[{k}].{name}", getattr(body, name), allowed)
+    pull = math.hypot(*(scene.loading.body_force or ())) / scene.time_scale**2
+    if not pull * scene.dt <= most:
+        raise refuse("loading.body_force", scene.loading.body_force, allowed)
+
+
+MOST_CELLS = 64
+"""Longest length of averaging [cells]; every node then sums 450 others along each axis."""
+
+
+def check_cracks(rock, shape, dim: int, dx: float) -> None:
+    """Refuse rock that this grid (shape functions, dimension, cell size dx [m]) cannot crack as its laws say."""
+    law = rock.after_failure
+    if not law.directional:
+        if rock.averaging.acts:
+            remedy = "use Local() or after_failure = Directional(...)"
+            raise refuse("rock.averaging", rock.averaging, "Local with the paper's laws after failure", remedy)
+        return
+    if dim == 3:
+        raise refuse("rock.after_failure", law, "isotropic in 3D", "use CompressionOnly, Void or Clipped")
+    if rock.averaging.acts:
+        least = rock.averaging.least_length(dx, shape.variance)
+        if not rock.averaging.length >= least:
+            remedy = f"use dx of at most {rock.averaging.length / least * dx:.4g} m"
+            raise refuse("rock.averaging.length", rock.averaging.length, f"at least {least:.4g} m here", remedy)
+        if not rock.averaging.length <= MOST_CELLS * dx:
+            remedy = f"use dx of at least {rock.averaging.length / MOST_CELLS:.4g} m"
+            raise refuse("rock.averaging.length", rock.averaging.length, f"at most {MOST_CELLS} cells", remedy)
+    if rock.criterion.breaks:
+        criterion, elasticity = rock.criterion, rock.elasticity
+        _check_snap_back("G_f_I", criterion.tensile_strength, law.softening, elasticity.E, shape.crack_band, dx)
+        _check_snap_back("G_f_II", criterion.cohesion, law.softening, elasticity.mu, shape.crack_band, dx)
+
+
+def _check_snap_back(name: str, strength: float, softening, modulus: float, cells: float, dx: float) -> None:
+    """A band of `cells` must not lose strength faster than the rock in it unloads: Bazant & Oh (1983), eq. 34."""
+    energy = getattr(softening, name)
+    fall = softening.steepest(strength, energy) * cells * dx
+    if not fall < modulus:
+        remedy = f"use a dx below {modulus / fall * dx:.4g} m, or more energy"
+        allowed = f"large enough that a crack band of {1e3 * cells * dx:.4g} mm does not snap back"
+        raise refuse(f"after_failure.softening.{name}", energy, allowed, remedy)

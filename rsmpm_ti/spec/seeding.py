@@ -1,0 +1,148 @@
+"""Where particles start: a lattice in each cell, or a jittered one. NumPy only.
+
+Also the check that a slit's two faces really separate, which needs the particles but no kernel.
+"""
+
+import itertools
+import math
+from dataclasses import dataclass
+from typing import NamedTuple
+
+import numpy as np
+
+from rsmpm_ti.checks import check_kinds, check_seed
+from rsmpm_ti.errors import refuse
+
+
+def _check_per_axis(value: int) -> None:
+    if not 1 <= value <= 8:
+        raise refuse("seeding.particles_per_axis", value, "a whole number from 1 to 8")
+
+
+class Seeds(NamedTuple):
+    """Where the particles of a body start: x [m], [n, dim], and their volume [m^dim], [n]."""
+
+    x: np.ndarray
+    volume: np.ndarray
+
+
+SAMPLES = 16
+"""Sample points per axis by which a sub-cell that an edge cuts is measured: the edge's place to 1/32 of it."""
+
+LEAST_SHARE = 0.3
+"""A cut sub-cell with less of its volume inside joins a neighbour: small particles at a face would fail by noise."""
+
+
+def _axes(lower: np.ndarray, upper: np.ndarray, origin: np.ndarray, spacing: float) -> list[np.ndarray]:
+    """Coordinates along each axis of the centres of the sub-cells of the background grid that overlap a box."""
+    axes = []
+    for a, b, o in zip(lower, upper, origin, strict=True):
+        first, last = math.floor((a - o) / spacing - 1e-6), math.ceil((b - o) / spacing + 1e-6)
+        axes.append(o + (np.arange(first, last) + 0.5) * spacing)
+    return axes
+
+
+def _points(axes: list[np.ndarray]) -> np.ndarray:
+    """All points of a lattice, first axis fastest, [n, dim]."""
+    return np.stack([c.ravel(order="F") for c in np.meshgrid(*axes, indexing="ij")], axis=1)
+
+
+def _whole_cells(region, origin: np.ndarray, spacing: float) -> Seeds:
+    """One particle per sub-cell whose centre lies inside, with the sub-cell's volume: edges become stairs."""
+    x = _points(_axes(*region.bounds(), origin, spacing))
+    x = x[region.contains(x)]
+    return Seeds(x, np.full(len(x), spacing ** x.shape[1]))
+
+
+def _cut_cells(region, origin: np.ndarray, spacing: float) -> Seeds:
+    """One particle per sub-cell that has material, at the centroid of that material and with its volume."""
+    axes = _axes(*region.bounds(), origin, spacing)
+    x, dim = _points(axes), len(axes)
+    share, moment = _shares(region, x, spacing)
+    _merge_slivers(share, moment, x, [len(axis) for axis in axes])
+    filled = share > 0.0
+    return Seeds(x[filled] + moment[filled] / share[filled][:, None], share[filled] * spacing**dim)
+
+
+def _shares(region, x: np.ndarray, spacing: float) -> tuple[np.ndarray, np.ndarray]:
+    """Share of each sub-cell's volume inside a region [n], and that share's first moment about the centre [n, dim]."""
+    dim = x.shape[1]
+    corners = np.array(list(itertools.product((-0.5, 0.0, 0.5), repeat=dim))) * (1.0 - 1e-6) * spacing
+    inside = np.array([region.contains(x + corner) for corner in corners])
+    cut = np.flatnonzero(inside.any(axis=0) & ~inside.all(axis=0))
+    steps = ((np.arange(SAMPLES) + 0.5) / SAMPLES - 0.5) * spacing
+    count, total = np.zeros(len(cut)), np.zeros((len(cut), dim))
+    for sample in itertools.product(steps, repeat=dim):
+        held = region.contains(x[cut] + sample)
+        count += held
+        total += held[:, None] * np.array(sample)
+    share, moment = inside.all(axis=0).astype(float), np.zeros((len(x), dim))
+    share[cut], moment[cut] = count / SAMPLES**dim, total / SAMPLES**dim
+    return share, moment
+
+
+def _merge_slivers(share: np.ndarray, moment: np.ndarray, x: np.ndarray, counts: list[int]) -> None:
+    """Give the material of sub-cells below LEAST_SHARE to the fullest neighbour along an axis; in place."""
+    slivers = np.flatnonzero((share > 0.0) & (share < LEAST_SHARE))
+    place = np.stack(np.unravel_index(slivers, counts, order="F"), axis=1)
+    best, fullest = np.full(len(slivers), -1), np.full(len(slivers), LEAST_SHARE)
+    for d, side in itertools.product(range(len(counts)), (-1, 1)):
+        beside = place.copy()
+        beside[:, d] += side
+        there = (beside[:, d] >= 0) & (beside[:, d] < counts[d])
+        index = np.ravel_multi_index(beside.T, counts, mode="clip", order="F")
+        fuller = there & (share[index] > fullest)
+        best[fuller], fullest[fuller] = index[fuller], share[index[fuller]]
+    giving, taking = slivers[best >= 0], best[best >= 0]
+    np.add.at(moment, taking, moment[giving] + share[giving][:, None] * (x[giving] - x[taking]))
+    np.add.at(share, taking, share[giving])
+    share[giving] = 0.0
+
+
+@dataclass(frozen=True, kw_only=True)
+class Lattice:
+    """`particles_per_axis` particles along each axis of a cell, at the centres of equal sub-cells.
+
+    `fitted`: sub-cells that an edge of the body cuts get a particle with the volume and at the centroid of what lies
+    inside, small remainders joined to a neighbour; otherwise edges are stairs of whole sub-cells, as in the paper.
+    """
+
+    particles_per_axis: int = 2
+    fitted: bool = False
+
+    def __post_init__(self):
+        check_kinds("seeding", self)
+        _check_per_axis(self.particles_per_axis)
+
+    def fill(self, region, origin: np.ndarray, dx: float) -> Seeds:
+        """Particles of a region on a grid of cells dx [m] with a node at origin [dim]."""
+        fill = _cut_cells if self.fitted else _whole_cells
+        return fill(region, origin, dx / self.particles_per_axis)
+
+
+@dataclass(frozen=True, kw_only=True)
+class Jittered:
+    """The lattice with every particle moved at random, so that cracks do not follow grid columns.
+
+    `amount` is the largest move along each axis as a fraction of the particle spacing; `seed` fixes it.
+    """
+
+    particles_per_axis: int = 2
+    amount: float = 0.1
+    seed: int = 1
+    fitted: bool = False
+
+    def __post_init__(self):
+        check_kinds("seeding", self)
+        _check_per_axis(self.particles_per_axis)
+        if not 0.0 <= self.amount < 0.5:
+            raise refuse("seeding.amount", self.amount, "in [0, 0.5)", "at 0.5 two particles can coincide")
+        check_seed("seeding.seed", self.seed)
+
+    def fill(self, region, origin: np.ndarray, dx: float) -> Seeds:
+        """Particles of a region. Membership is decided before the move, so that faces stay smooth
+        in the mean and the number of particles does not depend on the seed; no particle enters a slit."""
+        lattice = Lattice(particles_per_axis=self.particles_per_axis, fitted=self.fitted).fill(region, origin, dx)
+        reach = abs(self.amount) * dx / self.particles_per_axis
+        moved = lattice.x + np.random.default_rng(self.seed).uniform(-reach, reach, lattice.x.shape)
+        return Seeds(np.where(region.contains(moved)[:, None], moved, lattice.x), lattice.volume)

@@ -1,0 +1,1 @@
+"""Elastic rock against closed forms, finite elements and exact motions."""

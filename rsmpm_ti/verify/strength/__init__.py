@@ -1,0 +1,1 @@
+"""Rock that fails against closed forms: envelopes, strengths, cells that crack."""

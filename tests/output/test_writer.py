@@ -1,0 +1,64 @@
+"""The process that paints and writes: what it says when it cannot, and that it never outlives or outwaits a run."""
+
+import os
+import signal
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from snapshots import snapshot_of
+
+from rsmpm_ti import load_scene
+from rsmpm_ti.errors import SceneError
+from rsmpm_ti.output.pictures import commission
+from rsmpm_ti.output.writer import Writer
+from rsmpm_ti.records.snapshot import HISTORY_COLUMNS
+from rsmpm_ti.spec.scene import Output
+
+NO_ROWS = np.zeros(0, dtype=[(name, float) for name in HISTORY_COLUMNS])
+
+
+def started(out) -> Writer:
+    scene = replace(load_scene("cube", quick=True), output=Output(frames=1, movie=False))
+    (out / "frames").mkdir()
+    return Writer(commission(scene, "cube", out, 5e-3))
+
+
+def finish(writer: Writer) -> None:
+    writer.close(snapshot_of(np.array([[0.025, 0.05]])), NO_ROWS, [], np.zeros(0))
+
+
+def test_a_full_disk_is_reported_in_one_line_and_complete_files_stay(tmp_path):
+    writer = started(tmp_path)
+    writer.checkpoint({"a": np.zeros(3)})
+    writer.vtu([(0.0, "missing/../../particles_0000.vtu")], None)  # anything that the child cannot do
+    with pytest.raises(SceneError, match="cannot be written: .+"):
+        finish(writer)
+    assert np.array_equal(np.load(tmp_path / "checkpoint.npz")["a"], np.zeros(3))
+    writer.abandon()  # as a run does after any failure
+
+
+def test_a_child_that_is_killed_is_named(tmp_path):
+    writer = started(tmp_path)
+    os.kill(writer._child.pid, signal.SIGKILL)
+    with pytest.raises(SceneError, match="ended with status -9"):
+        finish(writer)
+
+
+def test_abandoned_it_is_gone_whatever_it_was_doing(tmp_path):
+    writer = started(tmp_path)
+    for _ in range(3):
+        writer.checkpoint({"a": np.zeros(2_000_000)})
+    writer.abandon()
+    assert writer._child.returncode is not None
+    writer.abandon()  # and once more, from an outer handler
+
+
+def test_checkpoints_of_a_run_are_written_in_order_and_one_is_kept_in_reserve(tmp_path):
+    writer = started(tmp_path)
+    for k in range(4):
+        writer.checkpoint({"a": np.array(k)})
+    finish(writer)
+    kept = [int(np.load(tmp_path / name)["a"]) for name in ("checkpoint.npz", "checkpoint.previous.npz")]
+    assert kept == [3, 2]
+    assert writer.cpu_s > 0.0 and writer.warning == ""

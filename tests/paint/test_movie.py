@@ -1,0 +1,60 @@
+"""Movies hold every frame in its true colours, and a machine without an encoder is told what to install."""
+
+import sys
+
+import numpy as np
+import pytest
+from PIL import Image
+
+from rsmpm_ti.paint.movie import Movie, gif, movie_size
+from rsmpm_ti.paint.palette import crack_palette
+from rsmpm_ti.paint.png import write_png
+
+
+@pytest.mark.parametrize("shape, size", [((720, 640), (1280, 720)), ((1440, 1280), (1920, 1080)), ((51, 33), (66, 52))])
+def test_movie_decodes_with_all_frames_even_size_and_true_colours(tmp_path, shape, size):
+    imageio = pytest.importorskip("imageio.v2")
+    pytest.importorskip("imageio_ffmpeg")
+    movie = Movie(tmp_path / "cube.mp4", fps=10)
+    cracks, stress = (np.full((*shape, 3), colour, dtype=np.uint8) for colour in ((213, 94, 0), (0, 114, 178)))
+    for _ in range(7):
+        movie.add(stress, cracks)
+    assert not movie.path.exists(), "half a movie does not carry the movie's name"
+    assert movie.close() == tmp_path / "cube.mp4"
+    assert [p.name for p in tmp_path.iterdir()] == ["cube.mp4"]
+    with imageio.get_reader(movie.path) as reader:
+        meta = reader.get_meta_data()
+        frames = [np.asarray(frame) for frame in reader]  # list() would ask for its length, which is infinite
+    assert len(frames) == 7 and meta["size"] == size and meta["fps"] == 10
+    assert meta["codec"] == "h264" and meta["pix_fmt"].startswith("yuv420p") and "bt709" in meta["pix_fmt"]
+    row, column = size[1] // 2, size[0] // 4
+    for place, colour in ((column, (213, 94, 0)), (3 * column, (0, 114, 178))):
+        assert np.abs(frames[3][row, place].astype(int) - colour).max() <= 4, "cracks left, stress right"
+
+
+def test_movie_without_frames_writes_nothing_and_without_encoder_says_so(tmp_path, monkeypatch):
+    pytest.importorskip("imageio_ffmpeg")
+    assert Movie(tmp_path / "empty.mp4").close() is None
+    assert list(tmp_path.iterdir()) == []
+    monkeypatch.setitem(sys.modules, "imageio_ffmpeg", None)
+    with pytest.raises(RuntimeError, match="pip install imageio imageio-ffmpeg"):
+        Movie(tmp_path / "none.mp4")
+
+
+def test_movie_fits_full_hd_and_is_never_enlarged():
+    assert movie_size(2536, 1440) == (1902, 1080)
+    assert movie_size(3128, 1150) == (1920, 706)
+    assert movie_size(640, 360) == (640, 360)
+
+
+def test_gif_has_all_frames_and_the_colours_of_cracks(tmp_path):
+    paths = []
+    for k in range(4):
+        image = np.full((100, 200, 3), 255, dtype=np.uint8)
+        image[:, : 50 * (k + 1)] = crack_palette().tension
+        paths.append(write_png(tmp_path / f"{k}.png", image))
+    with Image.open(gif(tmp_path / "cube.gif", paths, width=100)) as picture:
+        assert (picture.n_frames, picture.size) == (4, (100, 50))
+        picture.seek(2)
+        pixel = picture.convert("RGB").getpixel((60, 25))
+    assert np.abs(np.subtract(pixel, crack_palette().tension)).max() <= 4

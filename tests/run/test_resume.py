@@ -1,0 +1,194 @@
+"""Runs that are stopped, in every way, and go on: the same files as of one that never stopped."""
+
+import json
+import os
+import random
+import re
+import shutil
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from rsmpm_ti.errors import SceneError
+from rsmpm_ti.output.files import CHECKPOINTS, write_checkpoint
+from rsmpm_ti.records.result import Progress
+from rsmpm_ti.run import checkpoint
+from rsmpm_ti.run.run import simulate
+from rsmpm_ti.scene import build, main, parser
+
+RUN = [
+    "cube",
+    "--set",
+    "dx=0.002",
+    "--set",
+    "flaw_width=0.004",
+    "--set",
+    "time_scale=16",
+    "--set",
+    "shape=Linear",
+    "--set",
+    "schedule.rows=60",
+    "--frames",
+    "4",
+    "--set",
+    "output.vtu=2",
+    "--set",
+    "schedule.adaptive=true",
+    "--threads",
+    "1",
+    "--checkpoint-every",
+    "0",
+]
+"""Failures from a third of its strain on; Linear compiles fastest. Steps that adapt have the longer memory."""
+
+
+def files(folder: Path) -> dict[str, bytes]:
+    """Every file of a run that does not tell the time of day."""
+    timed = {"summary.json", *CHECKPOINTS}
+    return {
+        str(p.relative_to(folder)): p.read_bytes() for p in folder.rglob("*") if p.is_file() and p.name not in timed
+    }
+
+
+def physics(folder: Path) -> dict:
+    timed = {"wall_s", "compile_s", "painting_s", "painting_cpu_s", "particle_steps_per_s"}
+    return {k: v for k, v in json.loads((folder / "summary.json").read_text()).items() if k not in timed}
+
+
+def final_state(folder: Path) -> dict[str, np.ndarray]:
+    with np.load(folder / CHECKPOINTS[0], allow_pickle=False) as file:
+        return {key: file[key] for key in file.files if key != "text"}
+
+
+@pytest.fixture(scope="module")
+def whole(tmp_path_factory) -> Path:
+    """A run that nobody stops."""
+    out = tmp_path_factory.mktemp("whole")
+    assert main([*RUN, "--out", str(out)]) == 0
+    return out
+
+
+def assert_same_run(folder: Path, whole: Path) -> None:
+    mine, theirs = files(folder), files(whole)
+    assert sorted(mine) == sorted(theirs), "no gap, no leftover"
+    assert [name for name in mine if mine[name] != theirs[name]] == []
+    assert physics(folder) == physics(whole)
+    one, other = final_state(folder), final_state(whole)
+    assert all(np.array_equal(one[key], other[key], equal_nan=True) for key in one), "bit for bit on one thread"
+
+
+@pytest.mark.parametrize("kills", [5, pytest.param(20, marks=pytest.mark.validation)])
+def test_killed_again_and_again_it_ends_with_the_same_files(whole, tmp_path, kills):
+    """SIGKILL at random times, start-up included: whatever was under way is done again, not lost and not doubled."""
+    dice, command = random.Random(1), [sys.executable, "-m", "rsmpm_ti.scene", *RUN, "--out", str(tmp_path), "--resume"]
+    quiet = {"stdout": subprocess.DEVNULL, "stderr": subprocess.DEVNULL}
+    running = 0
+    for _ in range(kills):
+        run = subprocess.Popen(command, **quiet)
+        before = checkpoint_time(tmp_path)
+        while run.poll() is None and checkpoint_time(tmp_path) == before:  # until it runs, however long that takes
+            time.sleep(0.02)
+        time.sleep(dice.uniform(0.0, 0.6))
+        running += run.poll() is None
+        run.send_signal(signal.SIGKILL)
+        run.wait()
+    assert running >= 0.8 * kills, "it was killed while it ran"
+    assert subprocess.run(command, **quiet, timeout=300).returncode == 0
+    assert_same_run(tmp_path, whole)
+
+
+def checkpoint_time(folder: Path) -> float:
+    try:
+        return (folder / CHECKPOINTS[0]).stat().st_mtime
+    except FileNotFoundError:  # not yet, or just being replaced
+        return 0.0
+
+
+def test_ctrl_c_and_sigterm_write_what_there_is_and_resume_goes_on(whole, tmp_path):
+    scene, stops = build(parser().parse_args(RUN)), {0.3: signal.SIGINT, 0.6: signal.SIGTERM}
+    for share, number in stops.items():
+
+        def stop(progress: Progress, share=share, number=number) -> None:
+            if progress.share > share:
+                os.kill(os.getpid(), number)
+
+        result = simulate(scene, out=tmp_path, name="cube", threads=1, resume=True, progress=stop)
+        assert result.stopped.startswith("interrupted after step")
+        assert share < result.history["axial_strain"][-1] / 2.5e-4 < share + 0.05
+        assert json.loads((tmp_path / "summary.json").read_text())["stopped"] == result.stopped
+        assert (tmp_path / "history.csv").exists() and (tmp_path / "cube.mp4").exists()
+    assert main([*RUN, "--out", str(tmp_path), "--resume"]) == 0
+    assert_same_run(tmp_path, whole)
+
+
+def damage(path: Path, how: str) -> None:
+    data = path.read_bytes()
+    if how == "truncated":
+        path.write_bytes(data[: len(data) // 2])
+    elif how == "flipped":
+        middle = len(data) // 3
+        path.write_bytes(data[:middle] + bytes([data[middle] ^ 0xFF]) + data[middle + 1 :])
+    else:
+        path.write_bytes(b"")
+
+
+@pytest.mark.parametrize("how", ["truncated", "flipped", "emptied"])
+def test_a_damaged_checkpoint_is_passed_over_for_the_one_before(whole, tmp_path, how):
+    for name in CHECKPOINTS:
+        shutil.copy(whole / name, tmp_path / name)
+    with np.load(whole / CHECKPOINTS[0]) as latest, np.load(whole / CHECKPOINTS[1]) as previous:
+        identity = json.loads(str(latest["text"]))["identity"]
+        assert latest["clock_step"] >= previous["clock_step"]
+        rows = len(previous["history"])
+    damage(tmp_path / CHECKPOINTS[0], how)
+    assert len(checkpoint.read(tmp_path, identity)["history"]) == rows
+    damage(tmp_path / CHECKPOINTS[1], how)
+    with pytest.raises(SceneError, match="damaged .* start anew"):
+        checkpoint.read(tmp_path, identity)
+
+
+@pytest.mark.parametrize(
+    ("change", "named"),
+    [
+        (["--set", "flaw_angle=44"], r"scene\.bodies\[0\]\.region\.removed\[0\]\.angle is 45\.0 there and 44\.0 here"),
+        (["--precision", "f32"], "precision is 'f64' there and 'f32' here"),
+        (["--set", "schedule.cfl=0.3"], r"scene\.schedule\.cfl is .* there and 0\.3 here"),
+    ],
+)
+def test_a_checkpoint_of_another_run_is_refused_with_the_difference(whole, capsys, change, named):
+    before = files(whole)
+    assert main([*RUN, *change, "--out", str(whole), "--resume"]) == 2
+    words = capsys.readouterr().err
+    assert re.search(named, words) and len(words.splitlines()) == 1
+    assert files(whole) == before, "nothing was touched"
+
+
+def test_a_checkpoint_of_another_version_is_refused(whole, tmp_path):
+    with np.load(whole / CHECKPOINTS[0]) as file:
+        arrays = {key: file[key] for key in file.files}
+    text = json.loads(str(arrays["text"]))
+    identity = json.loads(json.dumps(text["identity"]))
+    text["identity"]["rsmpm_ti"] = "0.0.1"
+    write_checkpoint(tmp_path, arrays | {"text": np.array(json.dumps(text))})
+    with pytest.raises(SceneError, match="rsmpm_ti is '0.0.1' there"):
+        checkpoint.read(tmp_path, identity)
+
+
+def test_loading_a_checkpoint_runs_nobodys_code(tmp_path):
+    class Trap:
+        def __reduce__(self):
+            return (Path.touch, (tmp_path / "sprung",))
+
+    np.savez(tmp_path / CHECKPOINTS[0], text=np.array([Trap()], dtype=object))
+    with pytest.raises(SceneError, match="damaged"):
+        checkpoint.read(tmp_path, {})
+    assert not (tmp_path / "sprung").exists()
+
+
+def test_without_a_checkpoint_resume_starts_from_the_start(tmp_path):
+    assert checkpoint.read(tmp_path, {}) is None

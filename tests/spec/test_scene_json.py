@@ -1,0 +1,129 @@
+"""A scene as JSON and back."""
+
+import dataclasses
+import json
+
+import numpy as np
+import pytest
+from small_scene import SHIPPED, make, platens, refusal
+
+from rsmpm_ti.method.shape import Gimp
+from rsmpm_ti.method.transfer import Apic
+from rsmpm_ti.rock.criteria import MohrCoulomb
+from rsmpm_ti.rock.elasticity import Hooke
+from rsmpm_ti.rock.rock import Rock
+from rsmpm_ti.spec.boundaries import Fixed
+from rsmpm_ti.spec.loader import load_scene
+from rsmpm_ti.spec.loading_start import AtRest
+from rsmpm_ti.spec.scene import Scene
+from rsmpm_ti.spec.scene_json import KNOWN, from_plain, read_scene, to_plain
+
+
+def through_json(scene: Scene) -> Scene:
+    return from_plain(json.loads(json.dumps(to_plain(scene), allow_nan=False)))
+
+
+@pytest.mark.parametrize("name", SHIPPED)
+@pytest.mark.parametrize("quick", [False, True])
+def test_shipped_scene_survives_json(name, quick):
+    scene = load_scene(name, quick=quick)
+    assert through_json(scene) == scene
+
+
+def test_scene_of_rare_parts_survives_json():
+    scene = make(
+        shape=Gimp(),
+        transfer=Apic(),
+        order="usf",
+        schedule={"t_end": 1e-4, "dt": 1e-8},
+        loading={
+            "boundaries": (*platens(span=(0.01, 0.02), friction=0.2), Fixed(axis=0, side="lower", position=0.0)),
+            "start": AtRest(),
+            "body_force": (0.0, -9.81),
+        },
+        rock=Rock(
+            density=2600.0,
+            elasticity=Hooke(E=17e9, nu=0.14),
+            criterion=MohrCoulomb(cohesion=5.95e6, friction_angle=40.0, tensile_strength=2e6),
+        ),
+    )
+    assert through_json(scene) == scene
+
+
+@pytest.mark.parametrize("kind", ["os.system", "Path", "Simulation", "object", "__import__", None, 7, ["Box"], {}])
+def test_unknown_type_is_refused(kind):
+    plain = to_plain(make())
+    plain["rock"]["type"] = kind
+    assert "scene.rock" in refusal(lambda: from_plain(plain))
+
+
+def test_unknown_missing_and_wrong_fields_are_refused_by_place():
+    plain = to_plain(make())
+    assert "scene.rock.elasticity: Hooke has no field ['G']; it has ['E', 'nu', 'plane_stress']" in refusal(
+        lambda: from_plain({**plain, "rock": {**plain["rock"], "elasticity": {"type": "Hooke", "E": 1.0, "G": 1.0}}})
+    )
+    assert "scene.domain" in refusal(lambda: from_plain({**plain, "domain": {"type": "Domain", "dx": 1.0}}))
+    assert "elasticity.nu" in refusal(
+        lambda: from_plain({**plain, "rock": {**plain["rock"], "elasticity": {"type": "Hooke", "E": 1.0, "nu": 0.5}}})
+    )
+    refusal(lambda: from_plain({**plain, "schedule": 3.0}))
+    refusal(lambda: from_plain({**plain, "shape": "Linear"}))
+
+
+@pytest.mark.parametrize(
+    "place, value, words",
+    [
+        ("order", 3, "a text"),
+        ("title", None, "a text"),
+        ("shape", {"type": "Apic"}, "Linear, Gimp or QuadraticBSpline"),
+        ("domain.dx", True, "a number"),
+        ("domain.dx", "0.5e-3", "a number"),
+        ("domain.dx", 10**400, "a number"),
+        ("domain.lower", [0.0, "0"], "numbers"),
+        ("schedule.rows", 10.0, "an integer"),
+        ("schedule.dt", [1e-8], "a number or none"),
+        ("output.movie", 1, "true or false"),
+        ("output.margin", 0, "true or false"),
+        ("bodies.0.region", {"type": "Linear"}, "Box, Disc"),
+        ("bodies.0.seeding", {"type": "Linear"}, "Lattice or Jittered"),
+        ("rock.criterion", {"type": "Void"}, "MohrCoulomb or Unbreakable"),
+        ("loading.boundaries", [{"type": "Affine"}], "a list of Platen, Wall or Fixed"),
+        ("bodies", {"type": "Affine"}, "a list of Body"),
+    ],
+)
+def test_recorded_value_of_a_wrong_kind_is_refused_by_place(place, value, words):
+    plain = owner = to_plain(make())
+    *path, name = place.split(".")
+    for step in path:
+        owner = owner[int(step)] if step.isdigit() else owner[step]
+    owner[name] = value
+    message = refusal(lambda: from_plain(plain))
+    assert message.startswith(f"scene.{place} = ".replace(".0.", "[0].")) and " is refused: it must be " in message
+    assert words in message
+
+
+def test_whole_numbers_will_do_for_numbers():
+    plain = to_plain(make())
+    plain["loading"]["time_scale"], plain["domain"]["lower"] = 2, [-1, 0]
+    assert from_plain(plain).density == 4 * 2600.0
+
+
+def test_only_dataclasses_of_scenes_can_be_named():
+    assert all(dataclasses.is_dataclass(kind) and kind.__module__.startswith("rsmpm_ti.") for kind in KNOWN.values())
+    assert "Scene" in KNOWN and "Simulation" not in KNOWN
+
+
+@pytest.mark.parametrize(
+    "text", ["", "{", "[1, 2]", "3", "9" * 5000, "[" * 100_000, '"Scene"', '{"type": "Linear"}', '{"scene": null}']
+)
+def test_file_that_holds_no_scene_is_refused(tmp_path, text):
+    path = tmp_path / "scene.json"
+    path.write_text(text)
+    assert refusal(lambda: read_scene(path))
+
+
+def test_positions_of_a_shipped_scene_do_not_change_by_recording():
+    scene = load_scene(SHIPPED[0], quick=True)
+    for one, two in zip(scene.particles(), through_json(scene).particles(), strict=True):
+        np.testing.assert_array_equal(one.x, two.x)
+        np.testing.assert_array_equal(one.volume, two.volume)

@@ -1,0 +1,111 @@
+"""Break the solver on purpose, in a copy: at least one verification case must miss. `pytest -m validation -k mutation`.
+
+Each entry says what is broken, by which edits, and which case must notice.
+"""
+
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).resolve().parents[2]
+
+MUTATIONS = {
+    "wrong sign of spin": (
+        [("rock/tensors.py", "n = 0.25 * (G[1, 0] - G[0, 1])  # d x tan", "n = 0.25 * (G[0, 1] - G[1, 0])  # d x tan")],
+        "spin",
+    ),
+    "failure criterion in the plane only": (
+        [
+            (
+                "rock/tensors.py",
+                "return ti.Vector([ti.max(centre + radius, s[2]), ti.min(centre - radius, s[2])])",
+                "return ti.Vector([centre + radius, centre - radius])",
+            )
+        ],
+        "envelope",
+    ),
+    "explicit Jaumann rate": (
+        [
+            (
+                "rock/tensors.py",
+                "turned, shear = a * cos_2 - b * sin_2, b * cos_2 + a * sin_2\n        return ti.Vector("
+                "[centre + turned, centre - turned, s[2], shear]), ti.Vector(",
+                "w = G[1, 0] - G[0, 1]\n        turned, shear = a - b * w, b + a * w\n        return ti.Vector("
+                "[centre + turned, centre - turned, s[2], shear]), ti.Vector(",
+            )
+        ],
+        "spin",
+    ),
+    "pressure after failure from a rate": (
+        [
+            (
+                "failure/stress_update.py",
+                "isotropic(-rock.after_failure.pressure(bulk, particles.J[p]), sigma.n)",
+                "isotropic(ti.min((sigma[0] + sigma[1] + sigma[2]) / 3.0, 0.0), sigma.n)",
+            )
+        ],
+        "failed_cell",
+    ),
+    "crushed rock free to slip out of the plane": (
+        [
+            (
+                "failure/smeared_crack_stress.py",
+                "ti.max(ti.min(s[2], least_pressed), most_pressed)",
+                "ti.max(s[2], most_pressed)",
+            )
+        ],
+        "cracked_cell",
+    ),
+    "usl in place of musl": (
+        [
+            ("mpm/stepper.py", '"musl": musl,', '"musl": usl,'),
+            ("fields/state.py", 'self.remap = scene.order == "musl"', "self.remap = False"),
+        ],
+        "vibration",
+    ),
+    "forgotten strength factor": (
+        [("failure/smeared_crack_stress.py", "load = extremes / sim.particles.strength[p]", "load = extremes")],
+        "weibull_size",
+    ),
+    "confined rock without stress out of the plane": (
+        [("fields/state.py", "packed[:, :3] = -self.confinement", "packed[:, :2] = -self.confinement")],
+        "triaxial",
+    ),
+    "forgotten stress out of the plane": (
+        [
+            (
+                "rock/elasticity.py",
+                "return rotated + isotropic(self.lam * trace(d_eps), sigma.n) + 2.0 * self.mu * d_eps",
+                "out = rotated + isotropic(self.lam * trace(d_eps), sigma.n) + 2.0 * self.mu * d_eps\n"
+                "        out[2] = 0.0\n        return out",
+            )
+        ],
+        "envelope",
+    ),
+}
+
+
+@pytest.mark.validation
+@pytest.mark.parametrize("name", MUTATIONS)
+def test_mutation_is_noticed(name, tmp_path):
+    edits, case = MUTATIONS[name]
+    for folder in ("rsmpm_ti", "scenes"):
+        shutil.copytree(ROOT / folder, tmp_path / folder, ignore=shutil.ignore_patterns("__pycache__"))
+    command = [sys.executable, "-m", "rsmpm_ti.verify", case, "--out", str(tmp_path / "out")]
+    for file, old, new in edits:
+        path = tmp_path / "rsmpm_ti" / file
+        text = path.read_text(encoding="utf-8")
+        assert text.count(old) == 1, f"{file} has changed: mend the mutation {name!r}"
+        path.write_text(text.replace(old, new), encoding="utf-8")
+    done = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True, timeout=900)
+    print(done.stdout)
+    assert done.returncode == 1 and "MISS" in done.stdout and "broke" not in done.stdout, done.stdout + done.stderr
+
+
+@pytest.mark.parametrize("name", MUTATIONS)
+def test_mutation_still_fits_the_code(name):
+    for file, old, _ in MUTATIONS[name][0]:
+        assert (ROOT / "rsmpm_ti" / file).read_text(encoding="utf-8").count(old) == 1
