@@ -5,7 +5,7 @@ import taichi as ti
 from rsmpm_ti.failure.nonlocal_fields import mark_hot, mean_stress, near_hot, read_openings, smooth_stress
 from rsmpm_ti.failure.smeared_crack_stress import start_crack, strengths
 from rsmpm_ti.failure.stress_update import shaded
-from rsmpm_ti.fields.state import MOST_FRESH
+from rsmpm_ti.fields.nonlocal_sums import MAX_NEW_CRACKS
 from rsmpm_ti.fields.stencil import coordinates
 from rsmpm_ti.rock.tensors import extreme_principals, principal_angle
 
@@ -42,7 +42,7 @@ def crack_most_overloaded(sim: ti.template(), time: ti.f64):
                 most = ti.max(most, sim.means.peak[base + ti.Vector(offset)])
             if load >= most:
                 k = ti.atomic_add(sim.means.fresh[None], 1)
-                if k < MOST_FRESH:
+                if k < MAX_NEW_CRACKS:
                     sim.means.x[k] = particles.reference[p] + particles.u[p]
                     sim.means.angle[k] = particles.crack_angle[p]
                     start_crack(sim, p, 1, particles.crack_angle[p], time)
@@ -55,7 +55,7 @@ def shade(sim: ti.template()):
     """Mark what lies beside the cracks that have just begun."""
     particles, fresh = sim.particles, sim.means
     radius, slope = ti.static(sim.rock.averaging.radius, sim.rock.averaging.slope)
-    count = ti.min(fresh.fresh[None], MOST_FRESH)
+    count = ti.min(fresh.fresh[None], MAX_NEW_CRACKS)
     for p in particles.mode:
         if particles.mode[p] == 0:
             x = particles.reference[p] + particles.u[p]

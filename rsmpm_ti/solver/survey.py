@@ -6,7 +6,8 @@ import numpy as np
 import taichi as ti
 
 from rsmpm_ti.failure.smeared_crack_stress import spring_energy
-from rsmpm_ti.fields.state import SCALARS, Simulation
+from rsmpm_ti.fields.records import SCALARS
+from rsmpm_ti.fields.state import Simulation
 from rsmpm_ti.rock.after_failure import pressure_energy
 
 FIXED = len(SCALARS) + 2

@@ -214,7 +214,7 @@ def test_looks_are_a_quarter_of_the_waves_time_over_the_length_apart(dx, cfl, in
 
 def test_cracks_beyond_the_most_of_one_look_wait_for_the_next(monkeypatch):
     """A kernel takes the number from the module when it compiles, so this needs a simulation of its own."""
-    monkeypatch.setattr(tracking, "MOST_FRESH", 2)
+    monkeypatch.setattr(tracking, "MAX_NEW_CRACKS", 2)
     sim = rested(simulation.__wrapped__())
     tops = [particle_near(sim, x, y) for x in (6.3, 16.3, 26.3) for y in (8.3, 24.3)][:5]
     sigma = pulled_along(0.0, humps(sim, tops, width=1.5e-3))

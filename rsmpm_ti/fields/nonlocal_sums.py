@@ -1,0 +1,43 @@
+"""Node fields by which stress and crack strain are averaged over a length of the rock."""
+
+import math
+
+import numpy as np
+import taichi as ti
+
+from rsmpm_ti.fields.grid import Grid
+from rsmpm_ti.spec.scene import Scene
+
+MAX_NEW_CRACKS = 4096
+"""Most particles that crack by mean stress in one step; the others wait for the next."""
+
+
+@ti.data_oriented
+class NonlocalSums:
+    """Node fields of averages: sums of V sigma, V and V x crack strain, a second copy for blurring, and the largest
+    overload."""
+
+    def __init__(self, scene: Scene, grid: Grid, real):
+        taps = scene.rock.averaging.taps(scene.domain.dx, scene.shape.variance)
+        self.reach, self.taps = len(taps) // 2, ti.field(real, len(taps))
+        self.taps.from_numpy(np.array(taps))
+        self.sums, self.other = (ti.Vector.field(6, real, grid.nodes) for _ in range(2))
+        self.peak, self.hot, self.any_hot = (
+            ti.field(real, grid.nodes),
+            ti.field(ti.i32, grid.nodes),
+            ti.field(ti.i32, ()),
+        )
+        band = scene.shape.crack_band * scene.domain.dx
+        self.band_share = scene.rock.averaging.band_share(band)
+        self.variance = scene.rock.averaging.band_variance(band)
+        # smallest tensile strength of a particle [Pa], and steps between two looks: the mean over a length cannot
+        # change within a quarter of the time that a wave needs for it
+        self.weakest = scene.rock.criterion.tensile_strength
+        travel = scene.wave_speed * scene.dt
+        self.interval = max(1, math.floor(0.25 * scene.rock.averaging.length / travel))
+        # cracked particles whose shade has not been cast yet: place and angle of the crack's normal
+        self.fresh, self.x, self.angle = (
+            ti.field(ti.i32, ()),
+            ti.Vector.field(2, real, MAX_NEW_CRACKS),
+            ti.field(real, MAX_NEW_CRACKS),
+        )

@@ -1,0 +1,75 @@
+"""What kernels write for those outside: failure events, the ledger of sums over steps, the report of a survey."""
+
+import numpy as np
+import taichi as ti
+
+from rsmpm_ti.spec.scene import Scene
+
+
+@ti.data_oriented
+class Events:
+    """Failure events in the order in which they happen; at most one of each mode per particle."""
+
+    def __init__(self, scene: Scene, capacity: int, real):
+        self.count, self.by_mode = ti.field(ti.i32, ()), ti.field(ti.i32, 3)
+        # when a particle first begins to lose strength: without fracture energy that is the first event
+        self.onset = ti.field(ti.f64, ())
+        self.onset[None] = np.inf
+        self.directional = scene.rock.criterion.breaks and scene.rock.after_failure.directional
+        if self.directional:
+            capacity *= 2  # a particle that failed in tension may fail in shear later
+        capacity = capacity if scene.rock.criterion.breaks else 1
+        if self.directional:
+            self.crack_angle = ti.field(real, capacity)  # of the crack's normal [rad]
+        self.time, self.sigma_1 = ti.field(ti.f64, capacity), ti.field(real, capacity)
+        self.sigma_3, self.released = ti.field(real, capacity), ti.field(real, capacity)
+        self.x = ti.Vector.field(scene.dim, real, capacity)
+        self.mode, self.id = ti.field(ti.i32, capacity), ti.field(ti.i32, capacity)
+
+
+@ti.data_oriented
+class Ledger:
+    """Sums over steps, always float64: platen impulses [N s], their work [J], energy lost [J].
+
+    `latest` is the work of the latest step alone: forces are those of a step's beginning, so that the work until now
+    takes half of it again (trapezoidal rule).
+    """
+
+    def __init__(self, scene: Scene, slots: int):
+        boundaries = max(1, len(scene.loading.boundaries))
+        self.impulse = ti.Vector.field(scene.dim, ti.f64, boundaries)
+        self.work, self.latest = ti.field(ti.f64, boundaries), ti.field(ti.f64, boundaries)
+        self.body_work = ti.field(ti.f64, slots)
+        self.viscous, self.released = ti.field(ti.f64, slots), ti.field(ti.f64, slots)
+
+
+SCALARS = (
+    "kinetic",
+    "elastic",
+    "speed",
+    "J_min",
+    "J_max",
+    "J_intact",
+    "sick",
+    "sick_id",
+    "outside",
+    "strays",
+    "far_strays",
+    "work",
+    "dissipated",
+)
+"""Numbers of a survey, in the order in which the report lists them."""
+
+
+@ti.data_oriented
+class Report:
+    """What a survey sums into: scalar fields, because Taichi reduces those per thread, and one vector of them all."""
+
+    def __init__(self, scene: Scene):
+        for name in SCALARS:
+            setattr(self, name, ti.field(ti.f64, ()))
+        self.momentum = tuple(ti.field(ti.f64, ()) for _ in range(scene.dim))
+        self.scalars = tuple(getattr(self, name) for name in SCALARS)
+        self.sums = (*self.scalars, *self.momentum)
+        self.boundary_count = len(scene.loading.boundaries)
+        self.values = ti.field(ti.f64, len(SCALARS) + 2 + scene.dim + scene.dim * max(1, self.boundary_count))
