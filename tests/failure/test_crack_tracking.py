@@ -14,7 +14,7 @@ from rsmpm_ti.failure.nonlocal_fields import mark_hot, smooth_stress
 from rsmpm_ti.failure.stress_update import failure_by_own_stress
 from rsmpm_ti.fields.cell_order import sort_particles
 from rsmpm_ti.fields.grid import Grid
-from rsmpm_ti.fields.state import NO_SHADE, Means, Simulation
+from rsmpm_ti.fields.state import NO_SHADE, Simulation
 from rsmpm_ti.rock.criteria import MohrCoulomb
 from rsmpm_ti.rock.elasticity import Hooke
 from rsmpm_ti.rock.heterogeneity import Uniform, Weibull
@@ -209,7 +209,7 @@ def test_overload_is_over_the_strength_of_the_particle_itself():
 def test_looks_are_a_quarter_of_the_waves_time_over_the_length_apart(dx, cfl, interval):
     """Steps are cfl dx/c: the largest whole number of them in l/(4 c), l = 1 mm."""
     scene = block(dx=dx * 1e-3, cfl=cfl)
-    assert Means(scene, Grid(scene), ti.f64).interval == interval
+    assert NonlocalSums(scene, Grid(scene), ti.f64).interval == interval
 
 
 def test_cracks_beyond_the_most_of_one_look_wait_for_the_next(monkeypatch):
