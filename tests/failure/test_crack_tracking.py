@@ -14,6 +14,7 @@ from rsmpm_ti.failure.nonlocal_fields import mark_hot, smooth_stress
 from rsmpm_ti.failure.stress_update import failure_by_own_stress
 from rsmpm_ti.fields.cell_order import sort_particles
 from rsmpm_ti.fields.grid import Grid
+from rsmpm_ti.fields.nonlocal_sums import NonlocalSums
 from rsmpm_ti.fields.state import NO_SHADE, Simulation
 from rsmpm_ti.rock.criteria import MohrCoulomb
 from rsmpm_ti.rock.elasticity import Hooke
