@@ -1,5 +1,6 @@
 """The public names of rsmpm_ti and where they are made: read by type checkers, and by `__init__.py` to load them."""
 
+from .errors import ObserverError as ObserverError
 from .errors import SceneError as SceneError
 from .errors import UnstableRun as UnstableRun
 from .method.shape import Gimp as Gimp
@@ -10,6 +11,7 @@ from .method.transfer import PicFlip as PicFlip
 from .records.result import Progress as Progress
 from .records.result import Result as Result
 from .records.snapshot import Snapshot as Snapshot
+from .records.tables import Column as Column
 from .rock.after_failure import Clipped as Clipped
 from .rock.after_failure import CompressionOnly as CompressionOnly
 from .rock.after_failure import Void as Void
@@ -29,9 +31,14 @@ from .rock.softening import LinearSoftening as LinearSoftening
 from .rock.viscosity import BulkViscosity as BulkViscosity
 from .rock.viscosity import NoViscosity as NoViscosity
 from .run.run import simulate as simulate
+from .setups.brazilian import brazilian_test as brazilian_test
+from .setups.uniaxial import uniaxial_test as uniaxial_test
+from .solver.observer import Observer as Observer
 from .spec.boundaries import Fixed as Fixed
 from .spec.boundaries import Platen as Platen
 from .spec.boundaries import Wall as Wall
+from .spec.load_cell import Gauge as Gauge
+from .spec.load_cell import LoadCell as LoadCell
 from .spec.loader import load_scene as load_scene
 from .spec.loading_start import Affine as Affine
 from .spec.loading_start import AtRest as AtRest

@@ -1,4 +1,4 @@
-"""What can go wrong, as two exceptions: a scene that cannot be run, and a run that became unstable."""
+"""What can go wrong, as exceptions: a scene that cannot be run, a run that became unstable, an observer that failed."""
 
 
 class SceneError(ValueError):
@@ -10,6 +10,10 @@ class SceneError(ValueError):
     def __init__(self, message: str):
         line = " ".join(message.split())
         super().__init__("".join(c if c.isprintable() else repr(c)[1:-1] for c in line))
+
+
+class ObserverError(SceneError):
+    """A user's own observer or history column raised. The run was sound, and what there was of it is written."""
 
 
 class UnstableRun(RuntimeError):

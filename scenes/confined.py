@@ -4,22 +4,7 @@ Pressure keeps tension cracks shut, and splitting gives way to faulting: Horii &
 Soc. A 319:337.
 """
 
-from rsmpm_ti import (
-    Affine,
-    Body,
-    Box,
-    Difference,
-    Domain,
-    Jittered,
-    Loading,
-    MPa,
-    Platen,
-    Scene,
-    Schedule,
-    Slit,
-    lab_rock,
-    mm,
-)
+from rsmpm_ti import Jittered, MPa, Scene, Slit, lab_rock, mm, uniaxial_test
 
 QUICK = {"dx": 1.0 * mm}
 
@@ -37,18 +22,13 @@ def scene(
     time_scale: float | str = 16.0,
 ) -> Scene:
     flaw = Slit(centre=(25.0 * mm, 50.0 * mm), length=flaw_length, width=flaw_width, angle=flaw_angle, rounded=True)
-    block = Box(lower=(0.0, 0.0), upper=(50.0 * mm, 100.0 * mm))
-    platens = (
-        Platen(axis=1, side="lower", position=0.0, speed=2.5e-3),
-        Platen(axis=1, side="upper", position=100.0 * mm, speed=-2.5e-3),
-    )
-    return Scene(
+    return uniaxial_test(
         title="Compression of a specimen with an inclined flaw under confining pressure",
-        domain=Domain(lower=(-5.0 * mm, 0.0), upper=(55.0 * mm, 100.0 * mm), dx=dx),
-        bodies=(Body(region=Difference(whole=block, removed=(flaw,)), seeding=Jittered(seed=seed, fitted=True)),),
         rock=lab_rock(length=length),
-        loading=Loading(
-            boundaries=platens, start=Affine(), time_scale=time_scale, width=50.0 * mm, confinement=confinement
-        ),
-        schedule=Schedule(strain_end=strain_end),
+        flaws=(flaw,),
+        seeding=Jittered(seed=seed, fitted=True),
+        dx=dx,
+        strain_end=strain_end,
+        time_scale=time_scale,
+        confinement=confinement,
     )

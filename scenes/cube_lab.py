@@ -4,23 +4,7 @@ Wing cracks in tension come first, then shear cracks from the flaw's ends at the
 come from: `rsmpm_ti/rock/presets.py`.
 """
 
-from rsmpm_ti import (
-    Affine,
-    Body,
-    Box,
-    Difference,
-    Domain,
-    Jittered,
-    Loading,
-    MPa,
-    Output,
-    Platen,
-    Scene,
-    Schedule,
-    Slit,
-    lab_rock,
-    mm,
-)
+from rsmpm_ti import Jittered, MPa, Output, Scene, Slit, lab_rock, mm, uniaxial_test
 
 QUICK = {"dx": 1.0 * mm}
 
@@ -41,17 +25,14 @@ def scene(
 ) -> Scene:
     rock = lab_rock(G_f_I=G_f_I, G_f_II=G_f_II, residual_friction_angle=residual_friction_angle, length=length)
     flaw = Slit(centre=(25.0 * mm, 50.0 * mm), length=flaw_length, width=flaw_width, angle=flaw_angle, rounded=True)
-    block = Box(lower=(0.0, 0.0), upper=(50.0 * mm, 100.0 * mm))
-    platens = (
-        Platen(axis=1, side="lower", position=0.0, speed=2.5e-3),
-        Platen(axis=1, side="upper", position=100.0 * mm, speed=-2.5e-3),
-    )
-    return Scene(
+    return uniaxial_test(
         title="Uniaxial compression of a flawed specimen: directional cracks and fracture energy",
-        domain=Domain(lower=(-15.0 * mm, 0.0), upper=(65.0 * mm, 100.0 * mm), dx=dx),
-        bodies=(Body(region=Difference(whole=block, removed=(flaw,)), seeding=Jittered(seed=seed, fitted=True)),),
         rock=rock,
-        loading=Loading(boundaries=platens, start=Affine(), time_scale=time_scale, width=50.0 * mm),
-        schedule=Schedule(strain_end=strain_end),
+        flaws=(flaw,),
+        seeding=Jittered(seed=seed, fitted=True),
+        room=15.0 * mm,
+        dx=dx,
+        strain_end=strain_end,
+        time_scale=time_scale,
         output=Output(stress_limit=4.0 * MPa),
     )

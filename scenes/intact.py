@@ -1,22 +1,6 @@
 """The cube without a flaw: the uniform state whose modulus and strength are known exactly."""
 
-from rsmpm_ti import (
-    Affine,
-    Body,
-    Box,
-    Domain,
-    GPa,
-    Hooke,
-    Lattice,
-    Loading,
-    MohrCoulomb,
-    MPa,
-    Platen,
-    Rock,
-    Scene,
-    Schedule,
-    mm,
-)
+from rsmpm_ti import GPa, Hooke, MohrCoulomb, MPa, Rock, Scene, mm, uniaxial_test
 
 QUICK = {"dx": 1.0 * mm}
 
@@ -27,16 +11,10 @@ def scene(*, dx: float = 0.5 * mm, strain_end: float = 1.6e-3, time_scale: float
         elasticity=Hooke(E=17.0 * GPa, nu=0.14),
         criterion=MohrCoulomb(cohesion=5.95 * MPa, friction_angle=40.0, tensile_strength=2.0 * MPa),
     )
-    sign = 1.0 if strain_end > 0.0 else -1.0  # a negative strain pulls: direct tension
-    platens = (
-        Platen(axis=1, side="lower", position=0.0, speed=2.5e-3 * sign),
-        Platen(axis=1, side="upper", position=100.0 * mm, speed=-2.5e-3 * sign),
-    )
-    return Scene(
+    return uniaxial_test(
         title="Uniaxial test of an intact specimen",
-        domain=Domain(lower=(-5.0 * mm, 0.0), upper=(55.0 * mm, 100.0 * mm), dx=dx),
-        bodies=(Body(region=Box(lower=(0.0, 0.0), upper=(50.0 * mm, 100.0 * mm)), seeding=Lattice()),),
         rock=rock,
-        loading=Loading(boundaries=platens, start=Affine(), time_scale=time_scale, width=50.0 * mm),
-        schedule=Schedule(strain_end=strain_end),
+        dx=dx,
+        strain_end=strain_end,  # a negative strain pulls: direct tension
+        time_scale=time_scale,
     )

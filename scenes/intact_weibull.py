@@ -3,7 +3,7 @@
 import math
 from dataclasses import replace
 
-from rsmpm_ti import Affine, Body, Box, Domain, Jittered, Loading, Platen, Scene, Schedule, Weibull, lab_rock, mm
+from rsmpm_ti import Jittered, Scene, Weibull, lab_rock, mm, uniaxial_test
 
 QUICK = {"dx": 1.0 * mm, "time_scale": 20.0}
 
@@ -23,15 +23,12 @@ def scene(
         seed=seed,
         correlation_length=correlation_length,
     )
-    platens = (
-        Platen(axis=1, side="lower", position=0.0, speed=2.5e-3),
-        Platen(axis=1, side="upper", position=100.0 * mm, speed=-2.5e-3),
-    )
-    return Scene(
+    return uniaxial_test(
         title="Uniaxial compression of a heterogeneous specimen",
-        domain=Domain(lower=(-15.0 * mm, 0.0), upper=(65.0 * mm, 100.0 * mm), dx=dx),
-        bodies=(Body(region=Box(lower=(0.0, 0.0), upper=(50.0 * mm, 100.0 * mm)), seeding=Jittered(amount=0.1)),),
         rock=replace(lab_rock(), heterogeneity=strength),
-        loading=Loading(boundaries=platens, start=Affine(), time_scale=time_scale, width=50.0 * mm),
-        schedule=Schedule(strain_end=strain_end),
+        seeding=Jittered(amount=0.1),
+        room=15.0 * mm,
+        dx=dx,
+        strain_end=strain_end,
+        time_scale=time_scale,
     )

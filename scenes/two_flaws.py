@@ -7,23 +7,7 @@ line of the other; 90: the inner tips face each other; more: the flaws overlap; 
 
 import math
 
-from rsmpm_ti import (
-    Affine,
-    Body,
-    Box,
-    Difference,
-    Domain,
-    Jittered,
-    Loading,
-    MPa,
-    Output,
-    Platen,
-    Scene,
-    Schedule,
-    Slit,
-    lab_rock,
-    mm,
-)
+from rsmpm_ti import Jittered, MPa, Output, Scene, Slit, lab_rock, mm, uniaxial_test
 
 QUICK = {"dx": 1.0 * mm}
 
@@ -50,17 +34,14 @@ def scene(
         )
         for side in (-1.0, 1.0)
     )  # fmt: skip
-    block = Box(lower=(0.0, 0.0), upper=(50.0 * mm, 100.0 * mm))
-    platens = (
-        Platen(axis=1, side="lower", position=0.0, speed=2.5e-3),
-        Platen(axis=1, side="upper", position=100.0 * mm, speed=-2.5e-3),
-    )
-    return Scene(
+    return uniaxial_test(
         title="Uniaxial compression of a specimen with two flaws",
-        domain=Domain(lower=(-10.0 * mm, 0.0), upper=(60.0 * mm, 100.0 * mm), dx=dx),
-        bodies=(Body(region=Difference(whole=block, removed=flaws), seeding=Jittered(seed=seed, fitted=True)),),
         rock=lab_rock(),
-        loading=Loading(boundaries=platens, start=Affine(), time_scale=time_scale, width=50.0 * mm),
-        schedule=Schedule(strain_end=strain_end),
+        flaws=flaws,
+        seeding=Jittered(seed=seed, fitted=True),
+        room=10.0 * mm,
+        dx=dx,
+        strain_end=strain_end,
+        time_scale=time_scale,
         output=Output(stress_limit=4.0 * MPa),
     )

@@ -5,7 +5,8 @@ from types import SimpleNamespace
 import numpy as np
 from snapshots import snapshot_of
 
-from rsmpm_ti.records.snapshot import HISTORY_COLUMNS, Snapshot
+from rsmpm_ti.records.history_table import HISTORY_COLUMNS
+from rsmpm_ti.records.snapshot import Snapshot
 
 SPACING = 0.25e-3
 

@@ -5,7 +5,7 @@ import sys
 
 import pytest
 
-from rsmpm_ti.output.files import write_json
+from rsmpm_ti.records.files import write_json
 from rsmpm_ti.scene import build, main, parser
 from rsmpm_ti.spec.loader import available, keywords_of, load_scene
 from rsmpm_ti.spec.scene import Scene

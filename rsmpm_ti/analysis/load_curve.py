@@ -2,17 +2,18 @@
 
 import numpy as np
 
+from rsmpm_ti.records.history_table import nominal_stress
+
 
 def loading_curve(history: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Times [s], nominal stress (mean of the two platens) [Pa] and strain [1], compression positive, each [rows].
+    """Times [s], nominal stress (mean of both sides) [Pa] and strain [1], compression positive, each [rows].
 
     A row's stress is the mean since the row before, so it belongs to the middle of that interval; the times and strains
     returned are those of the middles.
     """
     time, strain = history["time_s"], history["axial_strain"]
     middle = time - 0.5 * np.diff(time, prepend=0.0)
-    stress = 0.5 * (history["stress_top_Pa"] + history["stress_bottom_Pa"])
-    return middle, stress, strain - 0.5 * np.diff(strain, prepend=0.0)
+    return middle, nominal_stress(history), strain - 0.5 * np.diff(strain, prepend=0.0)
 
 
 def load_at(history: np.ndarray, time: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

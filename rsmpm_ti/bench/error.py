@@ -9,6 +9,7 @@ from pathlib import Path
 from rsmpm_ti.bench.measures import Measure, measure
 from rsmpm_ti.bench.pareto import Entry, pareto, recommendations
 from rsmpm_ti.bench.sweep import CELLS, SHAPES, Setting, sweep
+from rsmpm_ti.records.files import write_csv
 
 CSV_NAME, PICTURE_NAME = "speed_vs_error.csv", "speed_vs_error.png"
 NAMES = tuple(f.name for f in fields(Setting))
@@ -37,20 +38,20 @@ def run_sweep(cases: list[str], finest: bool, jobs: int, out: Path) -> list[Entr
     settings = [setting for case in cases for setting in sweep(case, finest)]
     path = out / CSV_NAME
     entries = [entry for entry in read_sweep(path) if entry[0].case not in cases] if path.exists() else []
-    with open(path, "w", newline="", encoding="utf-8") as file:
-        writer = csv.writer(file)
-        writer.writerow([*NAMES, "error", "wall_s", "particle_steps"])
-        writer.writerows(_row(*entry) for entry in entries)
-        with multiprocessing.get_context("spawn").Pool(jobs, maxtasksperchild=8) as pool:
-            for k, (setting, m, problem) in enumerate(pool.imap_unordered(_work, settings), 1):
-                head = f"{k}/{len(settings)} {setting.case} {setting.cells}: {setting.scheme}"
-                if m is None:
-                    print(f"{head}: broke: {problem}", flush=True)
-                    continue
-                print(f"{head}: error {100 * m.error:.3g} %, {m.wall_s:.2f} s", flush=True)
-                writer.writerow(_row(setting, m))
-                file.flush()
-                entries.append((setting, m))
+
+    def save() -> None:
+        write_csv(path, [*NAMES, "error", "wall_s", "particle_steps"], (_row(*entry) for entry in entries))
+
+    save()
+    with multiprocessing.get_context("spawn").Pool(jobs, maxtasksperchild=8) as pool:
+        for k, (setting, m, problem) in enumerate(pool.imap_unordered(_work, settings), 1):
+            head = f"{k}/{len(settings)} {setting.case} {setting.cells}: {setting.scheme}"
+            if m is None:
+                print(f"{head}: broke: {problem}", flush=True)
+                continue
+            print(f"{head}: error {100 * m.error:.3g} %, {m.wall_s:.2f} s", flush=True)
+            entries.append((setting, m))
+            save()
     order = list(CELLS)
     return sorted(entries, key=lambda entry: order.index(entry[0].case))
 

@@ -1,10 +1,10 @@
 """The table of a verification: on the terminal, as CSV, and one picture per case."""
 
-import csv
 import math
 from pathlib import Path
 
 from rsmpm_ti.cases.case import Outcome, Row
+from rsmpm_ti.records.files import write_csv
 
 COLUMNS = ("case", "quantity", "reference", "got", "error", "tolerance", "verdict", "reason")
 
@@ -19,10 +19,7 @@ def cells(name: str, row: Row) -> list[str]:
 
 def write_table(path: Path, rows: list[tuple[str, Row]]) -> None:
     """One line per compared number, with the reason of its tolerance."""
-    with open(path, "w", newline="", encoding="utf-8") as file:
-        writer = csv.writer(file)
-        writer.writerow(COLUMNS)
-        writer.writerows(cells(name, row) for name, row in rows)
+    write_csv(path, COLUMNS, (cells(name, row) for name, row in rows))
 
 
 def print_rows(name: str, rows: tuple[Row, ...], seconds: float) -> None:

@@ -49,6 +49,4 @@ def static_state(scene: Scene, *, press: float = 8.0, hold: float = 4.0, cfl: fl
         snapshot = take_snapshot(drive.sim, clock.time)
         sigma = sigma + snapshot.sigma / LOOKS
     forces = (drive.survey.impulse - impulse) / (clock.time - start)
-    axis = loading.platens[0].axis
-    nominal = 0.5 * (forces[0, axis] - forces[1, axis]) / loading.width
-    return Static(snapshot, sigma, float(nominal), clock.strain)
+    return Static(snapshot, sigma, loading.load_cell.read(forces).stress, clock.strain)

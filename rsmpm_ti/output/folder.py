@@ -30,7 +30,8 @@ def prepare(scene: Scene, out: str | os.PathLike, *, keep: bool = False) -> Path
         for part in (*out.glob(".*.part*"), *out.glob("frames/.*.part*")):  # of a run that was killed
             part.unlink()
         if not keep:
-            forget(out, frames=0, vtus=0)
+            for pattern in ("frames/*_[0-9]*.png", "particles_[0-9]*.vtu"):
+                forget(out, pattern, keep=0)
             for old in out.glob("checkpoint*.npz"):
                 old.unlink()
     except (OSError, ValueError) as error:  # ValueError: a name that no file can have
@@ -43,17 +44,16 @@ def _unwritable(out: Path, error: Exception) -> SceneError:
     return SceneError(f"output folder {out} cannot be written: {reason}; make room, or give another with --out")
 
 
-def forget(out: Path, *, frames: int, vtus: int) -> None:
-    """Remove the frames and VTU files beyond so many of each."""
-    for pattern, count in (("frames/*_[0-9]*.png", frames), ("particles_[0-9]*.vtu", vtus)):
-        for path in out.glob(pattern):
-            if int(path.stem.rpartition("_")[2]) >= count:
-                path.unlink()
+def forget(out: Path, pattern: str, *, keep: int) -> None:
+    """Remove numbered files, such as frames, from number `keep` on."""
+    for path in out.glob(pattern):
+        if int(path.stem.rpartition("_")[2]) >= keep:
+            path.unlink()
 
 
 def write_record(out: Path, scene: Scene, name: str, precision: str) -> None:
     """scene.json: what was run, by what, on what. Raises SceneError where it cannot be written."""
-    from rsmpm_ti.output.files import write_json
+    from rsmpm_ti.records.files import write_json
     from rsmpm_ti.spec.loader import machine
     from rsmpm_ti.spec.scene_json import to_plain
 

@@ -60,7 +60,7 @@ def load_limits(scene: Scene, volume: float) -> tuple[float | None, float | None
 
     That is an upper bound of the elastic load (Voigt); the strength bounds it too. Confinement adds its pressure.
     """
-    if scene.loading.platens is None or scene.loading.width is None:
+    if scene.loading.platens is None or scene.loading.load_cell.width is None:
         return None, None
     strain = abs(scene.schedule.strain_end or scene.loading.strain_rate * scene.t_end)
     if strain == 0.0:  # platens that stand still
@@ -69,7 +69,7 @@ def load_limits(scene: Scene, volume: float) -> tuple[float | None, float | None
         scene.rock.elasticity.uniaxial_modulus(scene.dim)
         * strain
         * volume
-        / (scene.loading.height * scene.loading.width)
+        / (scene.loading.height * scene.loading.load_cell.width)
     )
     load += scene.loading.confinement
     if isinstance(scene.rock.criterion, MohrCoulomb):

@@ -15,6 +15,7 @@ from rsmpm_ti.paint.frame_kinds import Look, crack_look, cracking_look, margin_l
 from rsmpm_ti.paint.ggui import Ggui, probe
 from rsmpm_ti.paint.layout import TEXT_LINE, Box, lay_out
 from rsmpm_ti.paint.raster import Raster
+from rsmpm_ti.records.history_table import nominal_stress
 from rsmpm_ti.records.snapshot import SHEAR, TENSION, Snapshot
 
 KINDS = ("stress", "cracks", "margin")
@@ -162,7 +163,7 @@ def slab(snapshot: Snapshot) -> np.ndarray | slice:
 
 def load_curve(history: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Axial strain [1] and the mean of the stresses on both platens [Pa], [rows], compression positive."""
-    return history["axial_strain"], 0.5 * (history["stress_top_Pa"] + history["stress_bottom_Pa"])
+    return history["axial_strain"], nominal_stress(history)
 
 
 def draw_curve(picture: Image.Image, box: Box, across: np.ndarray, up: np.ndarray) -> None:

@@ -9,6 +9,8 @@ import fpng
 import numpy as np
 from PIL import Image
 
+from rsmpm_ti.records.files import complete
+
 NOTES_AT = 33
 """Bytes of the signature and of the first chunk, which must be IHDR; others may follow in any order."""
 
@@ -19,15 +21,10 @@ def write_png(path: str | os.PathLike, image: np.ndarray, **notes: str) -> Path:
     fpng takes a tenth of Pillow's time, which goes into trying filters, for files of the same size.
     """
     path = Path(path)
-    path.parent.mkdir(parents=True, exist_ok=True)
-    part = path.with_name(f".{path.name}.part")
     data = fpng.from_ndarray(np.ascontiguousarray(image))
     texts = [text_chunk(key, note) for key, note in notes.items()]
-    try:
+    with complete(path) as part:
         part.write_bytes(b"".join((data[:NOTES_AT], *texts, data[NOTES_AT:])))
-        os.replace(part, path)
-    finally:
-        part.unlink(missing_ok=True)
     return path
 
 

@@ -4,6 +4,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from rsmpm_ti.records.snapshot import MODE_NAMES
+from rsmpm_ti.records.tables import Column, Table
+
 
 @dataclass(frozen=True)
 class EventTable:
@@ -25,3 +28,32 @@ class EventTable:
 
     def __len__(self) -> int:
         return len(self.time)
+
+
+EVENTS = Table(
+    file="events.csv",
+    about="Failures of particles in the order of time; of rock that softens, when half of the strength is lost.",
+    columns=(
+        Column(name="time_s", unit="s", about="when it failed", value=lambda events: events.time),
+        Column(name="{axis}_m", unit="m", about="where the particle was", value=lambda events: events.x),
+        Column(
+            name="mode", unit="", about="tension or shear", value=lambda events: [MODE_NAMES[m] for m in events.mode]
+        ),
+        Column(
+            name="sigma_1_Pa", unit="Pa", about="largest (most tensile) principal stress then, tension positive",
+            value=lambda events: events.sigma_1,
+        ),
+        Column(
+            name="sigma_3_Pa", unit="Pa", about="smallest principal stress then", value=lambda events: events.sigma_3
+        ),
+        Column(
+            name="released_energy_J", unit="J", about="elastic energy that the failure set free; per metre in 2D",
+            value=lambda events: events.released,
+        ),
+        Column(
+            name="crack_normal_deg", unit="degree", about="angle of the crack's normal from +x, counter-clockwise",
+            value=lambda events: np.degrees(events.crack_angle),
+            only="rock whose cracks have a direction", wanted=lambda events: events.crack_angle is not None,
+        ),
+    ),
+)  # fmt: skip

@@ -10,9 +10,12 @@ from rsmpm_ti.records.snapshot import Snapshot
 
 @dataclass(frozen=True)
 class Result:
-    """What a run leaves behind. `history`: structured array of HISTORY_COLUMNS; `summary`: the dict of summary.json;
-    `events`: EventTable; `fracture`: cracks, fragments and acoustic events measured on them; `snapshot`: last state.
-    `stopped`: "" when the run reached its end, else why it did not."""
+    """What a run leaves behind.
+
+    `history`: structured array with the columns of history.csv; `summary`: the dict of summary.json; `events`:
+    EventTable; `fracture`: cracks, fragments and acoustic events measured on them; `snapshot`: last state.
+    `stopped`: "" when the run reached its end, else why it did not.
+    """
 
     history: np.ndarray
     summary: dict

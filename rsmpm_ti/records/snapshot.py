@@ -4,24 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-HISTORY_COLUMNS = (
-    "time_s",
-    "axial_strain",
-    "stress_top_Pa",
-    "stress_bottom_Pa",
-    "energy_kinetic_J",
-    "energy_elastic_J",
-    "energy_dissipated_J",
-    "work_J",
-    "failed_tension",
-    "failed_shear",
-    "dt_s",
-)
-"""Columns of `history.csv` and fields of the structured array `Result.history`, all float64.
-
-Strain and the two stresses are compression positive, as tests report them; energies are per metre of thickness in 2D.
-Under confinement stress is the whole axial stress, and strain and work count from the confined state.
-"""
+from rsmpm_ti.records.tables import Column, Table
 
 INTACT, TENSION, SHEAR = 0, 1, 2
 """Values of `failure_mode`."""
@@ -58,3 +41,50 @@ class Snapshot:
     # of the normal of the crack in the particle, from +x [degrees, 0 to 180), NaN where it has none and by the paper's
     # laws; where it failed in shear, of sigma_1 then; [n]
     crack_angle: np.ndarray
+
+
+PARTICLES = Table(
+    file="particles_0000.vtu, particles_0001.vtu, ...",
+    about=(
+        "Particles at `output.vtu` + 1 equal intervals of the run, for ParaView: open particles.pvd, which knows their "
+        "times. One vertex per particle, in the order of their seeding, without those that were dropped. Vectors have "
+        "three components, in 2D the last is 0. Positions are in double precision, all else in single. What the law "
+        "after failure remembers of each particle follows under the law's own names (with `law_` before a name that "
+        "stands here already)."
+    ),
+    columns=(
+        Column(name="displacement", unit="m", about="since the start, 3 components", value=lambda s: s.displacement),
+        Column(name="velocity", unit="m/s", about="3 components", value=lambda s: s.velocity),
+        Column(
+            name="stress", unit="Pa", about="Cauchy stress, tension positive, 9 components xx xy xz yx yy yz zx zy zz",
+            value=lambda s: s.sigma,
+        ),
+        Column(name="sigma_1", unit="Pa", about="largest (most tensile) principal stress", value=lambda s: s.sigma_1),
+        Column(name="sigma_3", unit="Pa", about="smallest principal stress", value=lambda s: s.sigma_3),
+        Column(
+            name="failure_mode", unit="1", about="0 intact, 1 failed in tension, 2 failed in shear",
+            value=lambda s: s.failure_mode,
+        ),
+        Column(name="failure_time", unit="s", about="NaN where intact", value=lambda s: s.failure_time),
+        Column(name="volume", unit="m^dim", about="current volume, in 2D an area", value=lambda s: s.volume),
+        Column(
+            name="strength_factor", unit="1", about="on cohesion and tensile strength; 1 in uniform rock",
+            value=lambda s: s.strength,
+        ),
+        Column(
+            name="margin", unit="1", about="how near to failure: 1 unloaded or pressed from all sides, 0 at failure "
+            "and where failed",
+            value=lambda s: s.margin,
+        ),
+        Column(
+            name="governs", unit="1", about="the failure that the margin is to, or that it was: 1 tension, 2 shear, "
+            "0 none",
+            value=lambda s: s.governs,
+        ),
+        Column(name="damage", unit="1", about="fraction of the strength lost, 0 to 1", value=lambda s: s.damage),
+        Column(
+            name="aperture_m", unit="m", about="opening of the crack in the particle; 0 by the paper's laws",
+            value=lambda s: s.aperture,
+        ),
+    ),
+)  # fmt: skip

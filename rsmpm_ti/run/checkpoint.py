@@ -5,20 +5,37 @@ so that a run that goes on takes the same sums in the same order as one that was
 """
 
 import json
+import time
 import zipfile
+from collections.abc import Callable
 from pathlib import Path
 
 import numpy as np
 
-from rsmpm_ti.errors import SceneError
+from rsmpm_ti.errors import ObserverError, SceneError
 from rsmpm_ti.output.files import CHECKPOINTS
-from rsmpm_ti.records.snapshot import HISTORY_COLUMNS
+from rsmpm_ti.solver.observer import Observer, Watch
 from rsmpm_ti.solver.outflow import Dropped
+from rsmpm_ti.solver.view import View
 
 EVENT_COLUMNS = ("time", "x", "mode", "sigma_1", "sigma_3", "released", "id")
 LEDGER = ("impulse", "work", "latest", "body_work", "viscous", "released")
 PER_SLOT = ("body_work", "viscous", "released")
 """Those of the ledger that have a slot for each thread: their sum is what counts."""
+
+
+class Checkpoint(Observer):
+    """Has a checkpoint written every so many seconds of wall time. It is the last to look at a row."""
+
+    every = 0.0  # it looks at every row, and then at the clock on the wall
+
+    def __init__(self, seconds: float, write: Callable[[], None]):
+        self._seconds, self._write, self._written = seconds, write, time.perf_counter()
+
+    def see(self, view: View) -> None:
+        if view.step > 0 and time.perf_counter() - self._written >= self._seconds:
+            self._write()
+            self._written = time.perf_counter()
 
 
 def take(drive, history, progress: dict, identity: dict) -> dict[str, np.ndarray]:
@@ -30,8 +47,7 @@ def take(drive, history, progress: dict, identity: dict) -> dict[str, np.ndarray
     arrays |= {f"event_{name}": getattr(sim.events, name).to_numpy()[:count] for name in _event_columns(sim)}
     arrays["event_by_mode"] = sim.events.by_mode.to_numpy()
     arrays["event_onset"] = np.array(sim.events.onset[None])
-    arrays["history"] = np.array(history.rows, dtype=float).reshape(-1, len(HISTORY_COLUMNS))
-    arrays |= {f"baseline_{name}": np.array(value) for name, value in history.baseline.items()}
+    arrays |= history.state()
     arrays |= {f"dropped_{name}": np.array(value) for name, value in vars(drive.dropped).items()}
     arrays |= {f"clock_{name}": np.array(value) for name, value in drive.clock.state().items()}
     arrays["text"] = np.array(json.dumps({"progress": progress, "identity": identity}))
@@ -56,8 +72,7 @@ def restore(arrays: dict[str, np.ndarray], drive, history) -> dict:
         field.from_numpy(column)
     sim.events.count[None], sim.events.onset[None] = count, float(arrays["event_onset"])
     sim.events.by_mode.from_numpy(arrays["event_by_mode"])
-    history.rows[:] = [tuple(row) for row in arrays["history"].tolist()]
-    history.baseline = {name: arrays[f"baseline_{name}"] for name in history.baseline}
+    history.resume(arrays)
     drive.clock.resume({name: arrays[f"clock_{name}"] for name in drive.clock.state()})
     drive.dropped = Dropped(
         count=int(arrays["dropped_count"]), momentum=arrays["dropped_momentum"],
@@ -65,6 +80,33 @@ def restore(arrays: dict[str, np.ndarray], drive, history) -> dict:
     )  # fmt: skip
     drive.look()
     return json.loads(str(arrays["text"]))["progress"]
+
+
+def observer_arrays(watches: list[Watch]) -> tuple[list[dict], dict[str, np.ndarray]]:
+    """What observers remember: a plain part for each, and arrays by names that say whose they are."""
+    parts, arrays = [], {}
+    for k, watch in enumerate(watches):
+        state = watch.state()
+        found = {name: value for name, value in state["own"].items() if isinstance(value, np.ndarray)}
+        rest = {name: value for name, value in state["own"].items() if name not in found}
+        try:
+            json.dumps(rest, allow_nan=True)
+            problem = next((name for name in found if not isinstance(name, str) or found[name].dtype.hasobject), None)
+        except (TypeError, ValueError) as error:
+            problem = error
+        if problem is not None:
+            wanted = "numbers, texts, lists and dicts of them, and NumPy arrays of numbers"
+            raise ObserverError(f"observer {watch.name}: state() may hold {wanted} ({problem})")
+        arrays |= {f"observer_{k}_{name}": value for name, value in found.items()}
+        parts.append({"next": state["next"], "own": rest, "arrays": list(found)})
+    return parts, arrays
+
+
+def restore_observers(watches: list[Watch], parts: list[dict], arrays: dict[str, np.ndarray]) -> None:
+    """The way back of `observer_arrays`, into observers of the same kinds in the same order."""
+    for k, (watch, part) in enumerate(zip(watches, parts, strict=True)):
+        kept = {name: arrays[f"observer_{k}_{name}"] for name in part["arrays"]}
+        watch.resume({"next": part["next"], "own": part["own"] | kept})
 
 
 def particle_arrays(sim) -> dict[str, np.ndarray]:

@@ -44,7 +44,7 @@ def guard(sim: Simulation, clock: Clock, survey: Survey) -> None:
         )
 
 
-def _quiet_energy(sim: Simulation) -> float:
+def quiet_energy(sim: Simulation) -> float:
     """What round-off may make [J]."""
     volume = sim.particles.volume.to_numpy().sum(dtype=np.float64)
     return float(0.5 * sim.density * sim.wave_speed**2 * QUIET_STRAIN**2 * volume)

@@ -1,42 +1,35 @@
-"""What is seen of a run while it goes: history rows, failure events, and the guard that stops it."""
+"""The history of a run: rows of named columns, and the guard that stops a run which makes energy."""
 
 import numpy as np
 
+from rsmpm_ti.errors import ObserverError
 from rsmpm_ti.fields.state import Simulation
 from rsmpm_ti.mpm.clock import Clock
-from rsmpm_ti.records.snapshot import HISTORY_COLUMNS
-from rsmpm_ti.solver.guard import _quiet_energy, guard_energy
+from rsmpm_ti.records.history_table import HISTORY
+from rsmpm_ti.records.tables import Column
+from rsmpm_ti.solver.gauges import gauge_columns
+from rsmpm_ti.solver.guard import guard_energy, quiet_energy
 from rsmpm_ti.solver.survey import Survey
+from rsmpm_ti.solver.view import View
+from rsmpm_ti.spec.load_cell import NO_LOAD
 
 
 class History:
-    """The rows of history.csv. Platen stress is the mean over the steps since the row before.
+    """The rows of history.csv: an observer of every row. Forces are means over the steps since the row before."""
 
-    It is the mean axial stress of a section of the loaded width: platen force over width, and the confining pressure,
-    which the platens do not read (see `confinement.py`) and which the rest of such a section's end feels too.
-    """
+    every = 0.0
 
-    def __init__(self, sim: Simulation, clock: Clock, start: Survey):
+    def __init__(self, sim: Simulation, clock: Clock, start: Survey, columns: tuple[Column, ...] = ()):
+        """start: a survey of the particles as they are; columns: more of them, of whoever asks for them."""
         self._sim, self._clock = sim, clock
-        self.rows: list[tuple[float, ...]] = []
-        self._energy_start = start.kinetic + start.elastic
-        self._quiet = _quiet_energy(sim)
-        self._impulse = start.impulse
-        self._time = clock.time
-        loading = sim.scene.loading
-        self._platens = None
-        if loading.platens is not None and loading.width is not None:
-            self._platens = tuple(loading.boundaries.index(platen) for platen in loading.platens)
-
-    @property
-    def baseline(self) -> dict[str, np.ndarray]:
-        """What the next row is counted from: energy of the start [J], impulses [N s] and time [s] of the last row."""
-        return {"energy_start": self._energy_start, "impulse": self._impulse, "time": self._time}
-
-    @baseline.setter
-    def baseline(self, kept: dict[str, np.ndarray]) -> None:
-        self._energy_start, self._time = float(kept["energy_start"]), float(kept["time"])
-        self._impulse = kept["impulse"]
+        self.columns = (*HISTORY.columns, *gauge_columns(sim), *columns)
+        self._asked_for = columns
+        self._rows: list[tuple[float, ...]] = []
+        self._table = None
+        self._energy_start, self._quiet = start.kinetic + start.elastic, quiet_energy(sim)
+        self._impulse, self._time = start.impulse, clock.time
+        self._cell = sim.scene.loading.load_cell
+        self.load = NO_LOAD
 
     @property
     def energy_start(self) -> float:
@@ -44,28 +37,50 @@ class History:
         return self._energy_start
 
     def record(self, survey: Survey) -> None:
-        """Add a row. Raises UnstableRun, the row included, if the run has made energy out of nothing."""
-        clock, loading = self._clock, self._sim.scene.loading
-        bottom = top = np.nan
-        if self._platens is not None and clock.time > self._time:
-            axis = loading.platens[0].axis
-            force = (survey.impulse - self._impulse)[:, axis] / (clock.time - self._time) / loading.width
-            # the lower plate pushes the specimen along +axis in compression, the upper one along -axis
-            bottom = loading.confinement + force[self._platens[0]]
-            top = loading.confinement - force[self._platens[1]]
-        self.rows.append(
-            (
-                clock.time, clock.strain, top, bottom, survey.kinetic, survey.elastic, survey.dissipated, survey.work,
-                float(survey.failed_tension), float(survey.failed_shear), clock.dt,
-            )
-        )  # fmt: skip
-        self._impulse, self._time = survey.impulse, clock.time
-        guard_energy(self._sim, clock, survey, self._energy_start, self._quiet)
+        """Add a row of the particles as they are, of which this is a survey; raises as `see`."""
+        self.see(View(self._sim, self._clock, survey, self))
+
+    def see(self, view: View) -> None:
+        """Add a row.
+
+        Raises UnstableRun, the row included, if the run has made energy out of nothing, and ObserverError, without the
+        row, if a column that was asked for fails.
+        """
+        survey = view.survey
+        if self._cell is not None and view.time > self._time:
+            forces = (survey.impulse - self._impulse) / (view.time - self._time)
+            self.load = self._cell.read(forces, self._sim.scene.loading.confinement)
+        else:
+            self.load = NO_LOAD
+        self._rows.append(tuple(self._value(column, view) for column in self.columns))
+        self._impulse, self._time = survey.impulse, view.time
+        guard_energy(self._sim, self._clock, survey, self._energy_start, self._quiet)
+
+    def _value(self, column: Column, view: View) -> float:
+        try:
+            return float(column.value(view))
+        except Exception as error:
+            if column not in self._asked_for:
+                raise
+            said = f"{type(error).__name__}: {error}"
+            raise ObserverError(f"history column {column.name} failed: {said}") from error
 
     def table(self) -> np.ndarray:
-        """Structured array with the fields HISTORY_COLUMNS."""
-        return np.array(self.rows, dtype=[(name, np.float64) for name in HISTORY_COLUMNS])
+        """Structured array of the rows so far, a float64 field for each column."""
+        if self._table is None or len(self._table) != len(self._rows):
+            self._table = np.array(self._rows, dtype=[(column.name, np.float64) for column in self.columns])
+        return self._table
 
-    @property
-    def failed(self) -> float:
-        return self.rows[-1][8] + self.rows[-1][9] if self.rows else 0.0
+    def state(self) -> dict[str, np.ndarray]:
+        """The rows, and what the next one is counted from: energy of the start [J], impulses [N s] and time [s]."""
+        return {
+            "history": np.array(self._rows, dtype=float).reshape(-1, len(self.columns)),
+            "history_energy_start": np.array(self._energy_start),
+            "history_impulse": np.array(self._impulse),
+            "history_time": np.array(self._time),
+        }
+
+    def resume(self, state: dict[str, np.ndarray]) -> None:
+        self._rows, self._table = [tuple(row) for row in state["history"].tolist()], None
+        self._energy_start, self._time = float(state["history_energy_start"]), float(state["history_time"])
+        self._impulse = state["history_impulse"]

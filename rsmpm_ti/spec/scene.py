@@ -19,6 +19,7 @@ from rsmpm_ti.rock.heterogeneity import check_scale
 from rsmpm_ti.rock.rock import Rock
 from rsmpm_ti.spec.boundaries import Fixed, Platen, Wall
 from rsmpm_ti.spec.confinement import check_confined_rock, check_confinement
+from rsmpm_ti.spec.load_cell import LoadCell
 from rsmpm_ti.spec.loading_start import Affine, AtRest, Press, Ramp
 from rsmpm_ti.spec.mass_scaling import LARGEST, estimate
 from rsmpm_ti.spec.regions import FARTHEST, Region, check_coordinates, slits_of
@@ -126,6 +127,7 @@ class Loading:
     depends on place and time: an object with a ti.func `acceleration(X, t)` of a particle's initial position [m] and
     the time [s]. A scene file brings its own, so a scene with one cannot be run again from its record.
     confinement is a pressure [Pa] on every free surface, in which bodies start at rest (see `confinement.py`).
+    cell: what is measured, and gauges; what it leaves open comes from the platens (see `load_cell.py`).
     """
 
     boundaries: tuple[Platen | Wall | Fixed, ...] = ()
@@ -136,6 +138,7 @@ class Loading:
     force_field: object | None = None
     width: float | None = None
     confinement: float = 0.0
+    cell: LoadCell = LoadCell()
 
     def __post_init__(self):
         check_kinds("loading", self)
@@ -157,13 +160,18 @@ class Loading:
 
     @property
     def platens(self) -> tuple[Platen, Platen] | None:
-        """(lower, upper) platen of the loading axis, if there are two that face each other."""
+        """(lower, upper) platen of the loading axis, the first two that face each other; they give the strain."""
         for lower in self.boundaries:
             for upper in self.boundaries:
                 same_axis = isinstance(lower, Platen) and isinstance(upper, Platen) and lower.axis == upper.axis
                 if same_axis and (lower.side, upper.side) == ("lower", "upper"):
                     return lower, upper
         return None
+
+    @property
+    def load_cell(self) -> LoadCell | None:
+        """What is measured, complete; None where there is no axis along which to measure."""
+        return self.cell.filled(self)
 
     @property
     def height(self) -> float:

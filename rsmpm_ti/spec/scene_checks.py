@@ -104,11 +104,12 @@ def check_loading(scene) -> None:
             allowed = f"on a plane of grid nodes along axis {boundary.axis}"
             nearest = f"the nearest is {domain.lower[boundary.axis] + round(cells) * domain.dx:.9g} m"
             raise refuse(f"boundaries[{k}].position", boundary.position, allowed, nearest)
+    _check_load_cell(scene)
     if scene.schedule.strain_end is not None or isinstance(loading.start, Affine):
         if loading.platens is None:
             needed = "two platens that face each other in loading.boundaries"
             raise SceneError(f"strain_end and the Affine start need {needed}; give t_end")
-        if loading.width is None:
+        if loading.load_cell.width is None:
             raise SceneError("loading.width is missing: platen forces need a loaded width to become stress")
     if loading.platens and not loading.height > 0.0:
         upper = loading.boundaries.index(loading.platens[1])
@@ -123,6 +124,40 @@ def check_loading(scene) -> None:
         if transits < LEAST_TRANSITS * (1.0 - 1e-9):
             least = f"at least {LEAST_TRANSITS * loading.height / scene.wave_speed:.4g} s, 5 wave transits"
             raise refuse("start.time", loading.start.time, least)
+
+
+def _check_load_cell(scene) -> None:
+    """What is measured must be there: boundaries on their side of the axis, and rock at the ends of a gauge."""
+    given, cell = scene.loading.cell, scene.loading.load_cell
+    if given.axis is not None and given.axis >= scene.dim:
+        raise refuse("cell.axis", given.axis, f"below the dimension {scene.dim}")
+    if cell is None and (given.lower is not None or given.upper is not None):
+        raise refuse("cell.axis", None, "given where no two platens face each other", "say along which axis it reads")
+    for side in ("lower", "upper"):
+        for k in getattr(given, side) or ():
+            boundaries = scene.loading.boundaries
+            if k >= len(boundaries) or (boundaries[k].axis, boundaries[k].side) != (cell.axis, side):
+                allowed = f"indices of loading.boundaries with axis = {cell.axis} and side = {side!r}"
+                raise refuse(f"cell.{side}", getattr(given, side), allowed)
+    for gauge in given.gauges:
+        for name in ("a", "b"):
+            point = getattr(gauge, name)
+            if len(point) != scene.dim:
+                raise refuse(f"gauge.{name}", point, f"{scene.dim} coordinates in metres")
+            if not _near_rock(scene, point):
+                raise refuse(
+                    f"gauge.{name}", point, "within a cell of a body", f"gauge {gauge.name!r} hangs in the air"
+                )
+        if gauge.length < scene.domain.dx:
+            allowed = f"at least a cell, {scene.domain.dx:g} m, away from gauge.a"
+            raise refuse("gauge.b", gauge.b, allowed, "both ends would be glued to the same particle")
+
+
+def _near_rock(scene, point: tuple[float, ...]) -> bool:
+    """Whether a point, or one a cell from it along an axis, lies in a body; surfaces belong to no body."""
+    steps = scene.domain.dx * np.eye(scene.dim)
+    around = np.array(point) + np.concatenate([np.zeros((1, scene.dim)), steps, -steps])
+    return any(body.region.contains(around).any() for body in scene.bodies)
 
 
 def check_motion(scene) -> None:

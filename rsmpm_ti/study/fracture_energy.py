@@ -6,6 +6,7 @@ import numpy as np
 
 from rsmpm_ti import load_scene, simulate
 from rsmpm_ti.cases.case import Outcome, at_most, relative
+from rsmpm_ti.records.history_table import nominal_stress
 from rsmpm_ti.rock.after_failure import CompressionOnly
 from rsmpm_ti.rock.nonlocal_mean import Local
 from rsmpm_ti.spec.boundaries import Platen
@@ -62,7 +63,7 @@ def curve(scene: Scene) -> dict:
     history = result.history
     return {
         "strain": -history["axial_strain"],
-        "stress": -0.5 * (history["stress_top_Pa"] + history["stress_bottom_Pa"]),
+        "stress": -nominal_stress(history),
         "dissipated": history["energy_dissipated_J"],
     }
 

@@ -13,7 +13,7 @@ import numpy as np
 from scipy.ndimage import gaussian_filter
 
 from rsmpm_ti.analysis.wing_cracks import crack_directions
-from rsmpm_ti.output.files import write_json
+from rsmpm_ti.records.files import write_json
 from rsmpm_ti.spec.regions import Slit
 from rsmpm_ti.verify.reference.finite_elements import solve
 from rsmpm_ti.verify.reference.meshing import Disc, Plate, Spacing

@@ -14,7 +14,7 @@ import numpy as np
 
 from rsmpm_ti import __version__
 from rsmpm_ti.cases.case import Outcome
-from rsmpm_ti.output.files import complete
+from rsmpm_ti.records.files import complete
 from rsmpm_ti.spec.loader import PACKAGE, available
 
 SOLVER = ("", "records", "rock", "method", "spec", "fields", "analysis", "failure", "mpm", "solver", "run")

@@ -10,8 +10,8 @@ import pytest
 from broken_bands import SPACING, failures, history, lattice, scattered, snapshot, strip
 
 from rsmpm_ti.analysis.fracture import measure_fracture
-from rsmpm_ti.output.files import write_json, write_table
 from rsmpm_ti.output.fracture_tables import write_fracture
+from rsmpm_ti.records.files import write_csv, write_json
 from rsmpm_ti.rock.criteria import MohrCoulomb
 from rsmpm_ti.rock.elasticity import Hooke
 from rsmpm_ti.rock.rock import Rock
@@ -167,5 +167,5 @@ def test_unstable_run_is_measured_all_the_same(tmp_path):
 
 def test_table_leaves_what_is_not_known_empty(tmp_path):
     rows = [(1, 0.1, "a", None), (np.int64(2), np.float64("nan"), "", np.inf)]
-    write_table(tmp_path / "t.csv", ("n", "v_m", "name", "w"), rows)
+    write_csv(tmp_path / "t.csv", ("n", "v_m", "name", "w"), rows)
     assert (tmp_path / "t.csv").read_text().split() == ["n,v_m,name,w", "1,0.1,a,", "2,,,"]

@@ -12,7 +12,7 @@ from rsmpm_ti import load_scene
 from rsmpm_ti.errors import SceneError
 from rsmpm_ti.output.pictures import commission
 from rsmpm_ti.output.writer import Writer
-from rsmpm_ti.records.snapshot import HISTORY_COLUMNS
+from rsmpm_ti.records.history_table import HISTORY_COLUMNS
 from rsmpm_ti.spec.scene import Output
 
 NO_ROWS = np.zeros(0, dtype=[(name, float) for name in HISTORY_COLUMNS])

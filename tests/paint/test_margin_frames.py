@@ -13,7 +13,8 @@ from rsmpm_ti.output.pictures import commission
 from rsmpm_ti.paint.figure import FramePainter
 from rsmpm_ti.paint.palette import View, crack_palette, cracking_palette, margin_palette
 from rsmpm_ti.paint.raster import Raster
-from rsmpm_ti.records.snapshot import HISTORY_COLUMNS, INTACT, SHEAR, TENSION
+from rsmpm_ti.records.history_table import HISTORY_COLUMNS
+from rsmpm_ti.records.snapshot import INTACT, SHEAR, TENSION
 from rsmpm_ti.rock.smeared_crack import Directional
 from rsmpm_ti.rock.softening import LinearSoftening
 from rsmpm_ti.spec.scene import Output

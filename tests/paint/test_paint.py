@@ -14,7 +14,8 @@ from rsmpm_ti.paint.palette import View, crack_palette, cracking_palette, margin
 from rsmpm_ti.paint.png import write_png
 from rsmpm_ti.paint.raster import Raster
 from rsmpm_ti.paint.summary_picture import summary_picture
-from rsmpm_ti.records.snapshot import HISTORY_COLUMNS, INTACT, SHEAR, TENSION
+from rsmpm_ti.records.history_table import HISTORY_COLUMNS
+from rsmpm_ti.records.snapshot import INTACT, SHEAR, TENSION
 
 pytestmark = pytest.mark.usefixtures("taichi_f64")
 

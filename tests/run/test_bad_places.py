@@ -19,11 +19,12 @@ from test_writer import NO_ROWS, started
 from rsmpm_ti.backend import kernel_cache
 from rsmpm_ti.errors import SceneError
 from rsmpm_ti.output import folder as run_folder
-from rsmpm_ti.output.files import CHECKPOINTS, write_checkpoint, write_json
+from rsmpm_ti.output.files import CHECKPOINTS, write_checkpoint
 from rsmpm_ti.paint.movie import Movie
 from rsmpm_ti.paint.png import write_png
+from rsmpm_ti.records.files import write_json
 from rsmpm_ti.run import checkpoint
-from rsmpm_ti.run.run import Settings
+from rsmpm_ti.run.settings import Settings
 from rsmpm_ti.scene import main
 from rsmpm_ti.spec import scene_checks as consistency
 from rsmpm_ti.spec.loader import load_scene, machine
@@ -74,7 +75,7 @@ def test_folder_that_cannot_be_written_is_refused_before_anything_starts(refused
     assert all(path.read_text() == "kept" for path in tmp_path.rglob("*") if path.is_file())
 
 
-@pytest.mark.parametrize("call", ["pathlib.Path.write_bytes", "rsmpm_ti.output.files.json.dump"])
+@pytest.mark.parametrize("call", ["pathlib.Path.write_bytes", "rsmpm_ti.records.files.json.dump"])
 def test_disk_that_is_full_already_is_refused_before_anything_starts(refused, tmp_path, monkeypatch, call):
     monkeypatch.setattr(call, full)
     assert "No space left on device; make room" in refused("--out", str(tmp_path))
@@ -169,7 +170,7 @@ def test_single_precision_is_refused_where_it_loses_places(refused, tmp_path):
 NOWHERE = {"HOME": "/dev/null", "MPLCONFIGDIR": "/dev/null/m", "TI_OFFLINE_CACHE_FILE_PATH": "/dev/null/t"}
 WITHOUT_CACHES = """
 import io, numpy as np
-from rsmpm_ti.run import start_taichi
+from rsmpm_ti.backend.start import start_taichi
 start_taichi("f64", "cpu", 1)
 import taichi as ti
 field = ti.field(float, 4)

@@ -13,8 +13,8 @@ import pytest
 
 from rsmpm_ti import load_scene
 from rsmpm_ti.errors import UnstableRun
+from rsmpm_ti.records.history_table import HISTORY_COLUMNS
 from rsmpm_ti.records.result import Progress
-from rsmpm_ti.records.snapshot import HISTORY_COLUMNS
 from rsmpm_ti.scene import main
 
 SMALL = ["--set", "dx=0.002", "--set", "flaw_width=0.006", "--set", "time_scale=16", "--frames", "4"]

@@ -12,6 +12,7 @@ from rsmpm_ti.method.transfer import Apic, PicFlip
 from rsmpm_ti.solver.advance import Drive
 from rsmpm_ti.solver.readout import take_snapshot
 from rsmpm_ti.spec.boundaries import Fixed, Wall
+from rsmpm_ti.spec.load_cell import LoadCell
 from rsmpm_ti.spec.regions import Box
 from rsmpm_ti.spec.scene import Body, Domain, Loading, Scene, Schedule
 from rsmpm_ti.verify.elastic.bodies import elastic
@@ -71,9 +72,10 @@ def self_weight(full: bool) -> Outcome:
     drive = set_up(scene)
     history = relax(drive, round(period / scene.dt / 40.0), 1e-8)
     snapshot = take_snapshot(drive.sim, drive.clock.time)
-    impulse, base = drive.survey.impulse[0, 1], density * GRAVITY * height
+    impulse, base = drive.survey.impulse, density * GRAVITY * height
     drive.advance(round(period / scene.dt))
-    reaction = (drive.survey.impulse[0, 1] - impulse) / (drive.clock.time - snapshot.time) / (2.0 * dx)
+    forces = (drive.survey.impulse - impulse) / (drive.clock.time - snapshot.time)
+    reaction = LoadCell(axis=1, lower=(0,), upper=(), width=2.0 * dx).read(forces).stress_lower
     y = snapshot.x[:, 1] - snapshot.displacement[:, 1]
     sigma, exact = snapshot.sigma[:, 1, 1], -base * (1.0 - y / height)
     cell = np.floor(y / dx).astype(int)

@@ -14,7 +14,7 @@ from pathlib import Path
 import numpy as np
 
 from rsmpm_ti.errors import SceneError, refuse
-from rsmpm_ti.output.files import complete, write_json
+from rsmpm_ti.records.files import complete, write_json
 from rsmpm_ti.spec.regions import Slit
 from rsmpm_ti.verify.reference.fe_field import METADATA, REFERENCE, STRESSES, read_field
 from rsmpm_ti.verify.reference.meshing import Disc, Plate, Spacing, on_boundary, slit_distance, triangles

@@ -20,6 +20,7 @@ from rsmpm_ti.analysis.summary import summarise
 from rsmpm_ti.cases.case import Case, Outcome, at_most, difference, relative
 from rsmpm_ti.cases.static_state import set_up
 from rsmpm_ti.method.shape import Linear
+from rsmpm_ti.records.history_table import nominal_stress
 from rsmpm_ti.records.snapshot import SHEAR
 from rsmpm_ti.solver.history import History
 from rsmpm_ti.solver.readout import read_events, take_snapshot
@@ -156,7 +157,7 @@ def triaxial(full: bool) -> Outcome:
     def draw(figure):
         curves, line = figure.subplots(1, 2)
         for test in tests:
-            stress = 0.5e-6 * (test.history["stress_top_Pa"] + test.history["stress_bottom_Pa"])
+            stress = 1e-6 * nominal_stress(test.history)
             curves.plot(1e3 * test.history["axial_strain"], stress, label=f"p = {1e-6 * test.p:g} MPa")
         curves.set(xlabel="axial strain [1e-3]", ylabel="axial stress [MPa]", title="Up to the first failure")
         curves.legend(fontsize="small")

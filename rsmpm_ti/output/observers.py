@@ -1,0 +1,72 @@
+"""The observers that have pictures and particle files made of a run: they say when, the writer's process does it."""
+
+import math
+
+from rsmpm_ti.output.folder import forget
+from rsmpm_ti.output.writer import Writer
+from rsmpm_ti.solver.observer import Observer
+from rsmpm_ti.solver.view import View
+
+JUMP_SHARE, JUMP_GROWTH = 0.0003, 0.05
+"""A frame is added when failures since the last one exceed this share of all particles and of all failures so far."""
+
+
+class Frames(Observer):
+    """Pictures at equal intervals of the run, and more of them when failed particles jump."""
+
+    every = 0.0  # it looks at every row for jumps
+
+    def __init__(self, writer: Writer, frames: int, particle_count: int):
+        """frames: how many at equal intervals, beside that of the start; jumps at most double that."""
+        self._writer, self._frames = writer, frames
+        self._jump = max(1.0, JUMP_SHARE * particle_count)
+        self._extra, self._next = frames, 0
+        self._failed, self._count = 0.0, 0
+
+    def see(self, view: View) -> None:
+        if self._due(view.fraction, float(view.survey.failed_tension + view.survey.failed_shear)):
+            self._writer.frame(self._count, view.readout, view.history)
+            self._count += 1
+
+    def _due(self, fraction: float, failed: float) -> bool:
+        """failed: particles failed so far."""
+        if self._frames == 0:
+            return False
+        due = fraction >= self._next / self._frames - 1e-9
+        if due:
+            self._next = math.floor(fraction * self._frames + 1e-9) + 1
+        elif self._extra > 0 and failed - self._failed >= max(self._jump, JUMP_GROWTH * self._failed):
+            self._extra -= 1
+            due = True
+        if due:
+            self._failed = failed
+        return due
+
+    def state(self) -> dict:
+        return {"next": self._next, "extra": self._extra, "failed": self._failed, "count": self._count}
+
+    def resume(self, state: dict) -> None:
+        self._next, self._extra = state["next"], state["extra"]
+        self._failed, self._count = state["failed"], state["count"]
+        forget(self._writer.out, "frames/*_[0-9]*.png", keep=self._count)
+        self._writer.refilm(self._count)
+
+
+class ParticleFiles(Observer):
+    """A VTU file of all particles at equal intervals of the run."""
+
+    def __init__(self, writer: Writer, files: int):
+        """files: how many, beside that of the start."""
+        self._writer, self.every = writer, 1.0 / files
+        self._entries: list[tuple[float, str]] = []
+
+    def see(self, view: View) -> None:
+        self._entries.append((view.time, f"particles_{len(self._entries):04d}.vtu"))
+        self._writer.vtu(list(self._entries), view.readout)
+
+    def state(self) -> dict:
+        return {"entries": self._entries}
+
+    def resume(self, state: dict) -> None:
+        self._entries = [tuple(entry) for entry in state["entries"]]
+        forget(self._writer.out, "particles_[0-9]*.vtu", keep=len(self._entries))

@@ -1,0 +1,62 @@
+"""How every file is written: under its name only when complete, and numbers that are not finite in one way."""
+
+import csv
+import json
+import os
+from collections.abc import Iterable
+from contextlib import contextmanager
+from pathlib import Path
+
+import numpy as np
+
+
+@contextmanager
+def complete(path: str | os.PathLike):
+    """Yield a temporary name in the same folder; it becomes `path` only if the block succeeds.
+
+    So what is already there is never lost: a reader finds the old file or the new one, never half of one.
+    """
+    path = Path(path)
+    path.parent.mkdir(parents=True, exist_ok=True)
+    part = path.with_name(f".{path.stem}.part{path.suffix}")
+    try:
+        yield part
+        os.replace(part, path)
+    finally:
+        part.unlink(missing_ok=True)
+
+
+def known(value):
+    """The value; None for a number that is not finite. An empty cell of a CSV and null of JSON mean: not defined."""
+    return None if isinstance(value, float | np.floating) and not np.isfinite(value) else value
+
+
+def cell(value) -> str:
+    """One cell of a CSV: numbers to ten digits, nothing for what is not known."""
+    value = known(value)
+    if value is None:
+        return ""
+    return f"{value:.10g}" if isinstance(value, float | np.floating) else str(value)
+
+
+def write_csv(path: str | os.PathLike, header: Iterable[str], rows: Iterable[Iterable]) -> None:
+    """A CSV of one header and any rows."""
+    with complete(path) as part, open(part, "w", newline="", encoding="utf-8") as file:
+        writer = csv.writer(file)
+        writer.writerow(header)
+        writer.writerows([cell(value) for value in row] for row in rows)
+
+
+def plain(data):
+    """Data as JSON can hold it: dicts, lists, texts and finite numbers."""
+    if isinstance(data, dict):
+        return {name: plain(value) for name, value in data.items()}
+    if isinstance(data, tuple | list):
+        return [plain(value) for value in data]
+    return known(data)
+
+
+def write_json(path: str | os.PathLike, data: dict) -> None:
+    with complete(path) as part, open(part, "w", encoding="utf-8") as file:
+        json.dump(plain(data), file, indent=2, allow_nan=False)
+        file.write("\n")

@@ -1,0 +1,55 @@
+"""Uniaxial compression or tension of a plate between two smooth platens."""
+
+import math
+
+from rsmpm_ti.rock.rock import Rock
+from rsmpm_ti.spec.boundaries import Platen
+from rsmpm_ti.spec.load_cell import LoadCell
+from rsmpm_ti.spec.loading_start import Affine
+from rsmpm_ti.spec.regions import Box, Difference, Slit
+from rsmpm_ti.spec.scene import Body, Domain, Loading, Output, Scene, Schedule
+from rsmpm_ti.spec.seeding import Jittered, Lattice
+
+
+def uniaxial_test(
+    *,
+    title: str,
+    rock: Rock,
+    dx: float,
+    strain_end: float,
+    flaws: tuple[Slit, ...] = (),
+    seeding: Lattice | Jittered | None = None,
+    width: float = 50e-3,
+    height: float = 100e-3,
+    room: float = 5e-3,
+    speed: float = 2.5e-3,
+    time_scale: float | str = 1.0,
+    confinement: float = 0.0,
+    cfl: float = 0.5,
+    cell: LoadCell | None = None,
+    output: Output | None = None,
+) -> Scene:
+    """A plate of width x height [m], its lower left corner at the origin, loaded along y from uniform straining on.
+
+    flaws: slits cut into it, in the plate's coordinates; seeding: Lattice() by default; room: empty grid on both sides
+    [m], into which it may bulge and pieces may fly; speed: of each platen [m/s]; a negative strain_end pulls: direct
+    tension. cell: what is measured; by default the force of both platens over the width.
+    """
+    closing = math.copysign(speed, strain_end)
+    plate = Box(lower=(0.0, 0.0), upper=(width, height))
+    platens = (
+        Platen(axis=1, side="lower", position=0.0, speed=closing),
+        Platen(axis=1, side="upper", position=height, speed=-closing),
+    )
+    return Scene(
+        title=title,
+        domain=Domain(lower=(-room, 0.0), upper=(round(width + room, 12), height), dx=dx),
+        bodies=(Body(region=Difference(whole=plate, removed=flaws) if flaws else plate, seeding=seeding or Lattice()),),
+        rock=rock,
+        loading=Loading(
+            boundaries=platens, start=Affine(), time_scale=time_scale, width=width, confinement=confinement,
+            cell=cell or LoadCell(),
+        ),
+        schedule=Schedule(strain_end=strain_end, cfl=cfl),
+        output=output or Output(),
+    )  # fmt: skip

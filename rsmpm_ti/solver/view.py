@@ -1,0 +1,57 @@
+"""One look at a run between two steps: what history columns are made of and what observers see."""
+
+from functools import cached_property
+from pathlib import Path
+
+import numpy as np
+
+from rsmpm_ti.fields.state import Simulation
+from rsmpm_ti.mpm.clock import Clock
+from rsmpm_ti.records.events import EventTable
+from rsmpm_ti.records.snapshot import Snapshot
+from rsmpm_ti.solver.readout import Readout, read_events, read_out
+from rsmpm_ti.solver.survey import Survey
+from rsmpm_ti.spec.load_cell import Load
+from rsmpm_ti.spec.scene import Scene
+
+
+class View:
+    """What there is to see of a run now. Particles are copied out when they are first asked for, once per look.
+
+    time [s], strain (of the platens, compression positive), step, dt [s], fraction (of the run that is done, 0 to 1),
+    survey (sums and extremes over particles), out (the run's folder, None where nothing is written), scene.
+    """
+
+    def __init__(self, sim: Simulation, clock: Clock, survey: Survey, history, out: Path | None = None):
+        self.sim, self.survey, self.out, self._history = sim, survey, out, history
+        self.time, self.strain, self.step, self.dt, self.fraction = (
+            clock.time, clock.strain, clock.step, clock.dt, clock.share
+        )  # fmt: skip
+
+    @property
+    def scene(self) -> Scene:
+        return self.sim.scene
+
+    @property
+    def load(self) -> Load:
+        """What the load cell reads, as a mean over the steps of the latest history row; NaN before the first."""
+        return self._history.load
+
+    @property
+    def history(self) -> np.ndarray:
+        """Rows so far, this look's included once it has been recorded; a structured array."""
+        return self._history.table()
+
+    @cached_property
+    def readout(self) -> Readout:
+        return read_out(self.sim, self.time)
+
+    @cached_property
+    def snapshot(self) -> Snapshot:
+        """All particles, as NumPy arrays in the order of their ids."""
+        return self.readout.snapshot()
+
+    @cached_property
+    def events(self) -> EventTable:
+        """Failures so far."""
+        return read_events(self.sim)

@@ -1,0 +1,133 @@
+"""What a test measures: the forces of its platens, the nominal stress made of them, and gauges on the specimen."""
+
+import math
+import re
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from rsmpm_ti.checks import check_kinds, check_positive, check_size
+from rsmpm_ti.errors import refuse
+from rsmpm_ti.spec.boundaries import Platen
+from rsmpm_ti.spec.regions import FARTHEST
+
+GAUGE_NAME = re.compile(r"[a-z][a-z0-9_]{0,39}")
+
+
+@dataclass(frozen=True, kw_only=True)
+class Gauge:
+    """Two points a and b of the specimen [m] whose distance is followed; lengthening is positive.
+
+    It is glued to the particles nearest to its points. reads: 'strain' (change of the distance over the distance,
+    column `gauge_NAME` of the history) or 'opening' (the change itself [m], column `gauge_NAME_m`: a clip gauge over a
+    notch).
+    """
+
+    name: str
+    a: tuple[float, ...]
+    b: tuple[float, ...]
+    reads: str = "strain"
+
+    def __post_init__(self):
+        check_kinds("gauge", self)
+        if not GAUGE_NAME.fullmatch(self.name):
+            raise refuse("gauge.name", self.name, "a word of at most 40 small letters, digits and _")
+        for name in ("a", "b"):
+            point = getattr(self, name)
+            if len(point) not in (2, 3) or len(point) != len(self.a):
+                raise refuse(f"gauge.{name}", point, "2 or 3 coordinates in metres, as many as gauge.a")
+            check_size(f"gauge.{name}", point, "coordinates in metres", FARTHEST)
+        if self.reads not in ("strain", "opening"):
+            raise refuse("gauge.reads", self.reads, "'strain' or 'opening'")
+
+    @property
+    def length(self) -> float:
+        """Distance of the two points [m]."""
+        return math.dist(self.a, self.b)
+
+    @property
+    def column(self) -> str:
+        """Its name in the history."""
+        return f"gauge_{self.name}" if self.reads == "strain" else f"gauge_{self.name}_m"
+
+
+@dataclass(frozen=True)
+class Load:
+    """What a load cell reads: force on the specimen [N] (per metre of thickness in 2D) and nominal stress [Pa] at its
+    lower and its upper side, pressing positive. NaN where nothing is measured."""
+
+    force_lower: float
+    force_upper: float
+    stress_lower: float
+    stress_upper: float
+
+    @property
+    def stress(self) -> float:
+        """Mean of both sides [Pa]."""
+        return 0.5 * (self.stress_upper + self.stress_lower)
+
+
+NO_LOAD = Load(math.nan, math.nan, math.nan, math.nan)
+
+
+@dataclass(frozen=True, kw_only=True)
+class LoadCell:
+    """Which boundaries are read, along which axis, and by which width their force becomes nominal stress.
+
+    What is None comes from the scene. axis: that of the first two platens that face each other. lower, upper: indices
+    in `loading.boundaries`; all platens of that side of the axis, so that the reaction of several supports is their
+    sum. width [m] (an area [m^2] in 3D): `loading.width`; stress = force / width, so for three-point bending over L
+    of a beam of depth h, width = 2 h^2 / (3 L) makes it the stress of beam theory at mid-span.
+    """
+
+    axis: int | None = None
+    lower: tuple[int, ...] | None = None
+    upper: tuple[int, ...] | None = None
+    width: float | None = None
+    gauges: tuple[Gauge, ...] = ()
+
+    def __post_init__(self):
+        check_kinds("cell", self)
+        if self.axis not in (None, 0, 1, 2):
+            raise refuse("cell.axis", self.axis, "0, 1 or 2")
+        for name in ("lower", "upper"):
+            indices = getattr(self, name) or ()
+            if len(set(indices)) < len(indices) or not all(index >= 0 for index in indices):
+                raise refuse(f"cell.{name}", indices, "different indices of loading.boundaries, counted from 0")
+        if self.width is not None:
+            check_positive("cell.width", self.width, "length in metres (area in 3D)")
+        columns = [gauge.column for gauge in self.gauges]
+        if len(set(columns)) < len(columns):
+            raise refuse("cell.gauges", columns, "gauges of different names")
+
+    def filled(self, loading) -> "LoadCell | None":
+        """With what is None from a `Loading`; None where there is no axis along which to measure."""
+        pair, axis = loading.platens, self.axis
+        if axis is None and pair is not None:
+            axis = pair[0].axis
+        if axis is None:
+            return None
+
+        def side(name: str) -> tuple[int, ...]:
+            found = getattr(self, name)
+            if found is not None:
+                return found
+            along = pair is not None and pair[0].axis == axis
+            boundaries = enumerate(loading.boundaries if along else ())
+            return tuple(k for k, b in boundaries if isinstance(b, Platen) and (b.axis, b.side) == (axis, name))
+
+        width = loading.width if self.width is None else self.width
+        return replace(self, axis=axis, lower=side("lower"), upper=side("upper"), width=width)
+
+    def read(self, forces: np.ndarray, confinement: float = 0.0) -> Load:
+        """Of a cell that is filled. forces: of each boundary on the bodies [N], [boundaries, dim].
+
+        The nominal stress is the mean axial stress of a section of the loaded width: platen force over width, and the
+        confining pressure [Pa], which the platens do not read (see `confinement.py`) and which the rest of such a
+        section's end feels too. In compression a lower plate pushes along +axis, an upper one along -axis.
+        """
+        width = math.nan if self.width is None else self.width
+        along = forces[:, self.axis]
+        lower = float(sum(along[k] for k in self.lower)) if self.lower else math.nan
+        upper = -float(sum(along[k] for k in self.upper)) if self.upper else math.nan
+        return Load(lower, upper, confinement + lower / width, confinement + upper / width)
