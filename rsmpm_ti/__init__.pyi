@@ -34,6 +34,7 @@ from .run.run import simulate as simulate
 from .setups.brazilian import brazilian_test as brazilian_test
 from .setups.uniaxial import uniaxial_test as uniaxial_test
 from .solver.observer import Observer as Observer
+from .solver.view import View as View
 from .spec.boundaries import Fixed as Fixed
 from .spec.boundaries import Platen as Platen
 from .spec.boundaries import Wall as Wall

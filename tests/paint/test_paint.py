@@ -30,10 +30,9 @@ def lattice(nx=40, ny=20, spacing=1e-3, lower=(0.0, 0.0)):
 
 
 def snapshot(x, sigma_1=0.0, mode=None, volume=1e-6, displacement=None, time=1e-3):
-    n = len(x)
     displacement = np.zeros_like(x) if displacement is None else displacement
-    constant = {"sigma_1": np.full(n, sigma_1), "volume": np.full(n, volume), "time": time}
-    return snapshot_of(x, mode, displacement=displacement, **constant)
+    fields = {"sigma_1": np.full(len(x), sigma_1), "volume": np.full(len(x), volume), "displacement": displacement}
+    return snapshot_of(x, mode, time=time, **fields)
 
 
 def history(rows, loaded=True):

@@ -1,0 +1,96 @@
+"""The keys of summary.json; who makes the values is said in `run/finish.py`."""
+
+from rsmpm_ti.records.tables import Column, Table
+
+
+def _key(name: str, unit: str, about: str) -> Column:
+    return Column(name=name, unit=unit, about=about)
+
+
+FLAWED = "; empty or null but for 2D scenes of one flaw in which something failed"
+
+SUMMARY = Table(
+    file="summary.json",
+    about=(
+        "The numbers of a run that people quote, and how it went. Onset: a particle first begins to lose strength; "
+        "first failure: one has lost half of it. In rock without fracture energy they are one. Under confinement axial "
+        "stresses are whole ones, the pressure included, and strains count from the confined state."
+    ),
+    columns=(
+        _key("particles", "1", "particles at the start"),
+        _key("steps", "1", "steps taken"),
+        _key("dt_s", "s", "time step, the last one where steps adapt"),
+        _key("wall_s", "s", "wall time of the run without start-up, of all its parts if it was resumed"),
+        _key("compile_s", "s", "wall time of start-up: kernels are compiled or found kept"),
+        _key("painting_s", "s", "what of `wall_s` went to observers: copying particles out, waiting for the writer"),
+        _key("painting_cpu_s", "s", "processor time of the process that paints and writes"),
+        _key("particle_steps_per_s", "1/s", "particles times steps over the solver's time"),
+        _key("time_scale", "1", "mass scaling: density is multiplied by its square"),
+        _key("confinement_Pa", "Pa", "confining pressure"),
+        _key("onset_stress_Pa", "Pa", "nominal stress at onset, compression positive"),
+        _key("onset_strain", "1", "nominal strain at onset"),
+        _key("first_failure_stress_Pa", "Pa", "nominal stress at first failure, extrapolated from the rows before it"),
+        _key("first_failure_strain", "1", "nominal strain then"),
+        _key("first_failure_time_s", "s", "time of first failure"),
+        _key("first_failure_mode", "", "tension or shear"),
+        _key("first_failure_position_m", "m", "where it was, a list of coordinates"),
+        _key(
+            "initiation_angles_deg", "degree", "angles at which the two wings leave the flaw, from its continuation; "
+            "null for a wing that is not there" + FLAWED,
+        ),
+        _key(
+            "first_crack_angles_deg", "degree", "of the first cracks at the two tips; for rock whose cracks have a "
+            "direction" + FLAWED,
+        ),
+        _key("wing_reach_m", "m", "distance from the two wings to the platens they grow to" + FLAWED),
+        _key("half_turn_mismatch_m", "m", "distance of one wing from the other turned by 180 degrees" + FLAWED),
+        _key("failed_tension", "1", "failures in tension"),
+        _key("failed_shear", "1", "failures in shear"),
+        _key("apparent_modulus_Pa", "Pa", "slope of the curve between 0.2 and 0.9 of the time to onset"),
+        _key("peak_stress_Pa", "Pa", "nominal stress of largest size, with its sign"),
+        _key("platen_imbalance", "1", "up to onset: mean difference of both sides over their mean added stress"),
+        _key("platen_imbalance_max", "1", "largest such ratio of rows with a tenth of the load or more"),
+        _key("kinetic_share", "1", "kinetic over elastic energy in the last row before onset"),
+        _key("energy_balance_error", "1", "largest residual of kinetic + elastic + dissipated - work, over the work"),
+        _key("energy_balance_error_elastic", "1", "the same up to onset"),
+        _key("cracks", "1", "rows of cracks.csv"),
+        _key("crack_length_m", "m", "sum of the lengths of all cracks; null in 3D"),
+        _key("fragments", "1", "pieces of intact rock, without dust"),
+        _key("largest_fragment_share", "1", "mass of the largest over that of the specimen"),
+        _key("acoustic_events", "1", "rows of acoustic.csv"),
+        _key("b_value", "1", "slope of log10 N(magnitude); null for too few events"),
+        _key("b_value_error", "1", "its standard error"),
+        _key("initiation", "", "list: the first failure near each flaw tip that became part of a crack, as follows"),
+        _key("initiation[].flaw", "1", "number of the flaw, from 0"),
+        _key("initiation[].tip", "", "number of the flaw and + or -"),
+        _key("initiation[].tip_m", "m", "where the tip is"),
+        _key("initiation[].stress_Pa", "Pa", "nominal stress then; null where nothing grew, as all that follows"),
+        _key("initiation[].strain", "1", "nominal strain then"),
+        _key("initiation[].time_s", "s", "its time"),
+        _key("initiation[].position_m", "m", "where it was"),
+        _key("initiation[].angle_deg", "degree", "between the flaw's continuation and the crack"),
+        _key("initiation[].mode", "", "tension or shear"),
+        _key("initiation[].crack", "1", "number of the crack in cracks.csv"),
+        _key("numerical_fracture", "", "a warning that intact particles have parted; null where they have not"),
+        _key("dropped", "1", "particles that left the domain and were taken out"),
+        _key("dropped_mass_kg", "kg", "their mass, the rock's own"),
+        _key("dropped_momentum_kg_m_s", "kg m/s", "their momentum, mass scaling included"),
+        _key("dropped_energy_J", "J", "their kinetic and elastic energy"),
+        _key("stopped", "", "why the run stopped before its end; empty where it did not"),
+        _key("warning", "", "what went wrong beside the run, such as a missing encoder of movies"),
+    ),
+)  # fmt: skip
+
+RECORD = Table(
+    file="scene.json",
+    about="What was run. `scene scene.json` runs it again; nothing in it is executed.",
+    columns=(
+        _key("rsmpm_ti", "", "version of the program"),
+        _key("name", "", "name of the run"),
+        _key("precision", "", "f64 or f32"),
+        _key("seeds", "1", "random seed of each body's seeding, null for a lattice"),
+        _key("machine", "", "versions of Python and of packages, kind of machine"),
+        _key("time_scale", "1", "the number that loading.time_scale comes to"),
+        _key("scene", "", "the whole scene: classes by name, with their fields"),
+    ),
+)
