@@ -23,6 +23,7 @@ from rsmpm_ti.errors import SceneError
 from rsmpm_ti.fields.state import initial_velocity
 from rsmpm_ti.output.pictures import load_limits, stress_limit
 from rsmpm_ti.rock.elasticity import Hooke
+from rsmpm_ti.spec.load_cell import Gauge, LoadCell
 from rsmpm_ti.spec.loader import load_scene
 from rsmpm_ti.spec.loading_start import AtRest
 from rsmpm_ti.spec.regions import Box
@@ -61,7 +62,8 @@ def bases() -> list[Scene]:
     lab = load_scene("cube_lab", dx=1e-3)
     little = Box(lower=(0.0, 0.04), upper=(0.01, 0.06))
     lab = replace(lab, bodies=(replace(lab.bodies[0], region=little),))
-    timed = replace(plain, schedule=Schedule(t_end=1e-2), loading=replace(plain.loading, start=AtRest()))
+    gauged = LoadCell(gauges=(Gauge(name="mouth", a=(0.02, 0.02), b=(0.02, 0.08)),))
+    timed = replace(plain, schedule=Schedule(t_end=1e-2), loading=replace(plain.loading, start=AtRest(), cell=gauged))
     block = Body(region=Box(lower=(0.0,) * 3, upper=(0.01,) * 3))
     solid = Scene(
         title="solid", domain=Domain(lower=(0.0,) * 3, upper=(0.012,) * 3, dx=2e-3), bodies=(block,), rock=plain.rock,

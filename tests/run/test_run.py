@@ -15,6 +15,7 @@ from rsmpm_ti import load_scene
 from rsmpm_ti.errors import UnstableRun
 from rsmpm_ti.records.history_table import HISTORY_COLUMNS
 from rsmpm_ti.records.result import Progress
+from rsmpm_ti.records.summary_table import RECORD, SUMMARY
 from rsmpm_ti.scene import main
 
 SMALL = ["--set", "dx=0.002", "--set", "flaw_width=0.006", "--set", "time_scale=16", "--frames", "4"]
@@ -101,6 +102,14 @@ def test_vtu_files_carry_the_promised_fields_and_the_cracks(run_folder):
     assert (
         np.abs(stress[failed] - np.trace(stress[failed], axis1=1, axis2=2)[:, None, None] / 3 * np.eye(3)).max() < 1e-6
     )
+
+
+def test_every_key_of_the_summary_is_declared_with_its_unit(run_folder):
+    summary = json.loads((run_folder / "summary.json").read_text())
+    assert list(summary) + [f"initiation[].{key}" for key in summary["initiation"][0]] == sorted(
+        SUMMARY.names, key=lambda name: (name.startswith("initiation[]"), SUMMARY.names.index(name))
+    )
+    assert set(json.loads((run_folder / "scene.json").read_text())) == set(RECORD.names)
 
 
 def test_movie_has_one_picture_per_frame(run_folder):
