@@ -120,7 +120,10 @@ def lost_in_tension(drive: Drive) -> tuple[np.ndarray, np.ndarray]:
     if not lost.any():
         return np.zeros((0, 2)), np.zeros(0)
     place = (particles.reference.to_numpy() + particles.u.to_numpy())[lost].astype(float)
-    normal = particles.crack_angle.to_numpy()[lost].astype(float) if particles.cracks else np.full(len(place), np.nan)
+    normal = np.full(len(place), np.nan)
+    if particles.history.has_normal:
+        across, up = particles.history.crack_normal.to_numpy()[lost].astype(float).T
+        normal = np.arctan2(up, across)
     return place, normal
 
 
