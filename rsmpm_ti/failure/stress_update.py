@@ -106,7 +106,7 @@ def check_failure(sim: ti.template(), p, dt, time, slot):
     else:
         failed = law.failed_mode(sim, p)
     if particles.mode[p] != 0:
-        sigma, more = law.respond(sim, p, dt * particles.L[p])
+        sigma, more = law.respond(sim, p, dt * particles.L[p], dt)
         lost += more
         particles.sigma[p] = sigma
         sim.ledger.released[slot] += ti.cast(particles.volume[p] * lost, ti.f64)

@@ -61,8 +61,8 @@ class AfterFailure:
         return 0.0
 
     @ti.func
-    def respond(self, sim: ti.template(), p, G):
-        """(stress, energy lost) after a step with displacement gradient G; sigma[p] holds the elastic trial stress.
+    def respond(self, sim: ti.template(), p, G, dt):
+        """(stress, energy lost) after a step of dt [s] with displacement gradient G; sigma[p] is the elastic trial stress.
 
         It may change the mode of a particle from tension to shear.
         """
@@ -111,7 +111,7 @@ class Fluid(AfterFailure):
         return J * elasticity.energy(sim.particles.sigma[p]) - self.stored(sim, p)
 
     @ti.func
-    def respond(self, sim: ti.template(), p, G):
+    def respond(self, sim: ti.template(), p, G, dt):
         bulk = ti.static(sim.rock.elasticity.bulk)
         return isotropic(-self.pressure(bulk, sim.particles.J[p]), sim.particles.sigma.n), 0.0
 

@@ -119,7 +119,7 @@ class Directional(AfterFailure):
         return 0.0
 
     @ti.func
-    def respond(self, sim: ti.template(), p, G):
+    def respond(self, sim: ti.template(), p, G, dt):
         sigma, lost = crack_return(sim, p, G)
         lost *= sim.particles.J[p]
         h = sim.particles.history
