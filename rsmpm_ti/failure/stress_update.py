@@ -2,10 +2,8 @@
 
 import taichi as ti
 
-from rsmpm_ti.failure.smeared_crack_stress import has_failed, load_factors, release, start_crack
-from rsmpm_ti.fields.state import NO_SHADE
-from rsmpm_ti.rock.after_failure import pressure_energy
-from rsmpm_ti.rock.tensors import extreme_principals, isotropic, principal_angle
+from rsmpm_ti.rock.criteria import load_factors
+from rsmpm_ti.rock.tensors import extreme_principals, principal_normal
 
 
 @ti.func
@@ -19,8 +17,8 @@ def record_failure(sim: ti.template(), p, mode, extremes, released, time):
     events.released[e] = released
     events.mode[e] = mode
     events.id[e] = particles.id[p]
-    if ti.static(events.directional):
-        events.crack_angle[e] = particles.crack_angle[p]
+    if ti.static(particles.history.has_normal):
+        events.normal[e] = particles.history.crack_normal[p]
 
 
 @ti.func
@@ -45,9 +43,10 @@ def update_stress(sim: ti.template(), p, L, dt):
 
 
 @ti.func
-def shaded(sim: ti.template(), p, angle):
-    """Whether a crack with a normal near `angle` runs beside the particle."""
-    return ti.cos(2.0 * (angle - sim.particles.shade_angle[p])) > 0.0 and sim.particles.shade_angle[p] < NO_SHADE
+def excluded(sim: ti.template(), p, normal):
+    """Whether a crack with a normal within 45 degrees of a unit vector runs beside the particle."""
+    along = normal.dot(sim.particles.excluding_normal[p])
+    return 2.0 * along * along > 1.0
 
 
 @ti.func
@@ -65,11 +64,11 @@ def own_shear_load(sim: ti.template(), load):
 
 @ti.func
 def failure_by_own_stress(sim: ti.template(), p, extremes):
-    """Mode by a particle's own stress: 0, 1 or 2. With averaging, tension is for the mean stress unless shaded."""
+    """Mode by a particle's own stress: 0, 1 or 2. With a nonlocal mean, tension is judged by that unless excluded."""
     load = load_factors(sim, p, extremes)
     mode = sim.rock.criterion.mode(load[0], load[1])
     if ti.static(sim.averaging):
-        if mode == 1 and not shaded(sim, p, principal_angle(sim.particles.sigma[p])):
+        if mode == 1 and not excluded(sim, p, principal_normal(sim.particles.sigma[p])):
             mode = ti.select(own_shear_load(sim, load) >= 1.0, 2, 0)
     return mode
 
@@ -82,53 +81,35 @@ def must_check(sim: ti.template(), p):
 
 
 @ti.func
-def check_and_release(sim: ti.template(), p, dt, time, slot):
-    """The failure check for rock that cracks with a direction, and the stress of what has cracked.
-
-    The event is when a particle has opened or slipped by what costs half of the strength: at once without fracture
-    energy.
-    """
+def start_failure(sim: ti.template(), p, mode, normal, time):
+    """From now on a particle loses strength by tension (1) or shear (2); returns the energy lost at once [J/m^3]."""
     particles = sim.particles
-    extremes = extreme_principals(particles.sigma[p])
-    if particles.mode[p] == 0:
-        mode = failure_by_own_stress(sim, p, extremes)
-        if mode != 0:
-            start_crack(sim, p, mode, principal_angle(particles.sigma[p]), time)
-            if ti.static(particles.viscous):
-                particles.q[p] = 0.0
-    if particles.mode[p] != 0:
-        sigma, lost = release(sim, p, dt * particles.L[p], time)
-        lost *= particles.volume[p] * particles.J[p]
-        particles.sigma[p] = sigma
-        particles.lost[p] = particles.lost[p] + lost
-        sim.ledger.released[slot] += ti.cast(lost, ti.f64)
-        mode = particles.mode[p]
-        if mode != particles.failed[p] and has_failed(sim, p, mode):
-            particles.failed[p] = mode
-            record_failure(sim, p, mode, extremes, particles.lost[p], time)
+    ti.atomic_min(sim.events.onset[None], time)
+    particles.mode[p] = mode
+    if ti.static(particles.viscous):
+        particles.q[p] = 0.0
+    return sim.rock.after_failure.begin(sim, p, mode, normal)
 
 
 @ti.func
-def check_failure(sim: ti.template(), p, time, slot):
-    """The failure check of the paper: tension first, then Mohr-Coulomb; irreversible.
+def check_failure(sim: ti.template(), p, dt, time, slot):
+    """The failure check of the paper, tension first, then Mohr-Coulomb; irreversible. And the stress of failed rock.
 
-    A failed particle keeps s = 0 and a pressure from total J.
+    What failed rock carries, what that costs and when it is an event is for the law after failure to say.
     """
-    particles, rock = sim.particles, sim.rock
-    bulk = ti.static(rock.elasticity.bulk)
-    sigma, mode = particles.sigma[p], particles.mode[p]
-    if mode == 0:
-        extremes = extreme_principals(sigma)
-        load = load_factors(sim, p, extremes)
-        mode = rock.criterion.mode(load[0], load[1])
+    particles, law = sim.particles, sim.rock.after_failure
+    extremes, failed, lost = extreme_principals(particles.sigma[p]), 0, 0.0
+    if particles.mode[p] == 0:
+        mode = failure_by_own_stress(sim, p, extremes)
         if mode != 0:
-            J = particles.J[p]
-            particles.mode[p] = mode
-            if ti.static(particles.viscous):
-                particles.q[p] = 0.0
-            kept = pressure_energy(rock.after_failure.pressure(bulk, J), bulk, J)
-            released = particles.volume[p] * (J * rock.elasticity.energy(sigma) - kept)
-            sim.ledger.released[slot] += ti.cast(released, ti.f64)
-            record_failure(sim, p, mode, extremes, released, time)
-    if mode != 0:
-        particles.sigma[p] = isotropic(-rock.after_failure.pressure(bulk, particles.J[p]), sigma.n)
+            lost += start_failure(sim, p, mode, principal_normal(particles.sigma[p]), time)
+    else:
+        failed = law.failed_mode(sim, p)
+    if particles.mode[p] != 0:
+        sigma, more = law.respond(sim, p, dt * particles.L[p], dt)
+        lost += more
+        particles.sigma[p] = sigma
+        sim.ledger.released[slot] += ti.cast(particles.volume[p] * lost, ti.f64)
+        mode = law.failed_mode(sim, p)
+        if mode != failed:
+            record_failure(sim, p, mode, extremes, particles.volume[p] * law.released(sim, p, lost), time)

@@ -15,12 +15,11 @@ class Events:
         # when a particle first begins to lose strength: without fracture energy that is the first event
         self.onset = ti.field(ti.f64, ())
         self.onset[None] = np.inf
-        self.directional = scene.rock.criterion.breaks and scene.rock.after_failure.directional
-        if self.directional:
-            capacity *= 2  # a particle that failed in tension may fail in shear later
-        capacity = capacity if scene.rock.criterion.breaks else 1
-        if self.directional:
-            self.crack_angle = ti.field(real, capacity)  # of the crack's normal [rad]
+        self.names = ("time", "x", "mode", "sigma_1", "sigma_3", "released", "id")
+        capacity = scene.rock.after_failure.max_events * capacity if scene.rock.criterion.breaks else 1
+        if scene.rock.criterion.breaks and scene.rock.after_failure.oriented:
+            self.normal = ti.Vector.field(scene.dim, real, capacity)  # unit vector across the crack
+            self.names += ("normal",)
         self.time, self.sigma_1 = ti.field(ti.f64, capacity), ti.field(real, capacity)
         self.sigma_3, self.released = ti.field(real, capacity), ti.field(real, capacity)
         self.x = ti.Vector.field(scene.dim, real, capacity)

@@ -19,10 +19,6 @@ from rsmpm_ti.spec.loading_start import Affine
 from rsmpm_ti.spec.scene import Scene
 from rsmpm_ti.spec.seeding import Seeds
 
-NO_SHADE = 100.0
-"""Angle [rad] beside a crack of a particle that none runs beside."""
-
-
 FEW_NODES = 50_000
 """On a CPU, fewer nodes than these are done by one thread: 0.2 ms, as waking the others takes."""
 
@@ -79,8 +75,6 @@ class Simulation:
         order = np.argsort(np.ravel_multi_index(base.T, self.grid.nodes, mode="clip"), kind="stable")
         particles.reference.from_numpy(x[order].astype(kind))
         particles.v.from_numpy(v[order].astype(kind))
-        if self.averaging:
-            particles.shade_angle.fill(NO_SHADE)
         particles.volume.from_numpy((volume[order] / self.J_start).astype(kind))
         particles.J.fill(self.J_start)
         if self.confined:

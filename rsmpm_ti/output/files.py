@@ -34,7 +34,7 @@ def write_vtu(path: Path, snapshot: Snapshot) -> None:
     import meshio
 
     fields = {name: _as_point_data(a, snapshot.x.shape[1]) for name, a in PARTICLES.filled(snapshot, 3).items()}
-    for name, entries in getattr(snapshot, "history", {}).items():
+    for name, entries in snapshot.history.items():
         fields[f"law_{name}" if name in fields else name] = _single(entries)
     mesh = meshio.Mesh(_padded(snapshot.x), [("vertex", np.arange(len(snapshot.x))[:, None])], point_data=fields)
     with complete(path) as part:

@@ -82,6 +82,25 @@ class MohrCoulomb:
         return (0.5 * (sigma_1 - sigma_3) + 0.5 * (sigma_1 + sigma_3) * self.sin_phi) / self.c_cos_phi
 
 
+@ti.func
+def strengths(sim: ti.template(), p):
+    """Tensile strength and cohesion of a particle's rock before it cracked [Pa]."""
+    f_t, c = sim.rock.criterion.tensile_strength, sim.rock.criterion.cohesion
+    if ti.static(sim.particles.varied):
+        f_t *= sim.particles.strength[p]
+        c *= sim.particles.strength[p]
+    return ti.Vector([f_t, c])
+
+
+@ti.func
+def load_factors(sim: ti.template(), p, extremes):
+    """Extreme principal stresses as the criterion sees them: dividing by k is multiplying both strengths by it."""
+    load = extremes
+    if ti.static(sim.particles.varied):
+        load = extremes / sim.particles.strength[p]
+    return load
+
+
 @ti.data_oriented
 @dataclass(frozen=True, kw_only=True)
 class Unbreakable:

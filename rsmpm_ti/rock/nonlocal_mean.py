@@ -8,6 +8,9 @@ import numpy as np
 from rsmpm_ti.checks import check_kinds, check_positive
 from rsmpm_ti.errors import refuse
 
+MAX_CELLS = 64
+"""Longest length of the mean [cells]; every node then sums 450 others along each axis."""
+
 
 @dataclass(frozen=True, kw_only=True)
 class Local:
@@ -76,6 +79,16 @@ class Nonlocal:
     def band_variance(self, width: float) -> float:
         """Variance of such a band after averaging [m^2]."""
         return self.length**2 + width**2 / 12.0
+
+    def check(self, dx: float, variance: float) -> None:
+        """Raise SceneError where cells of size dx [m] are too large or too small for this length."""
+        least = self.least_length(dx, variance)
+        if not self.length >= least:
+            remedy = f"use dx of at most {self.length / least * dx:.4g} m"
+            raise refuse("rock.averaging.length", self.length, f"at least {least:.4g} m here", remedy)
+        if not self.length <= MAX_CELLS * dx:
+            remedy = f"use dx of at least {self.length / MAX_CELLS:.4g} m"
+            raise refuse("rock.averaging.length", self.length, f"at most {MAX_CELLS} cells", remedy)
 
     def least_length(self, dx: float, variance: float) -> float:
         """The shortest length that this grid can average over [m]."""

@@ -18,7 +18,6 @@ from rsmpm_ti.solver.observer import Observer, Watch
 from rsmpm_ti.solver.outflow import Dropped
 from rsmpm_ti.solver.view import View
 
-EVENT_COLUMNS = ("time", "x", "mode", "sigma_1", "sigma_3", "released", "id")
 LEDGER = ("impulse", "work", "latest", "body_work", "viscous", "released")
 PER_SLOT = ("body_work", "viscous", "released")
 """Those of the ledger that have a slot for each thread: their sum is what counts."""
@@ -122,7 +121,7 @@ def _particle_fields(sim) -> list[tuple[str, object]]:
 
 
 def _event_columns(sim) -> tuple[str, ...]:
-    return (*EVENT_COLUMNS, "crack_angle") if sim.events.directional else EVENT_COLUMNS
+    return sim.events.names
 
 
 def read(out: Path, identity: dict) -> dict[str, np.ndarray] | None:

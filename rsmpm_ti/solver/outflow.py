@@ -57,8 +57,8 @@ def park(sim: ti.template()):
                 particles.q[p] = 0.0
             if ti.static(particles.breaks):
                 particles.mode[p] = ti.max(particles.mode[p], 1)  # nothing looks for cracks in it any more
-            if ti.static(particles.cracks):
-                particles.opening[p] = ti.Vector.zero(float, 2)
+            for component in ti.static(particles.history.components):
+                component[p] = 0
 
 
 def drop(sim: Simulation, before: Survey, dropped: Dropped) -> tuple[Survey, Dropped]:

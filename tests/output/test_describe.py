@@ -30,8 +30,8 @@ def test_every_column_has_a_meaning_and_names_differ(table):
 
 
 def test_what_a_law_remembers_is_written_under_its_own_name(tmp_path):
-    snapshot = snapshot_of(np.array([[0.0, 0.0], [1e-3, 0.0]]))
-    object.__setattr__(snapshot, "history", {"slip": np.array([0.5, 0.25]), "damage": np.array([[1.0, 2.0, 3.0]] * 2)})
+    history = {"slip": np.array([0.5, 0.25]), "damage": np.array([[1.0, 2.0, 3.0]] * 2)}
+    snapshot = snapshot_of(np.array([[0.0, 0.0], [1e-3, 0.0]]), history=history)
     write_vtu(tmp_path / "p.vtu", snapshot)
     data = meshio.read(tmp_path / "p.vtu").point_data
     assert set(data) == {*PARTICLES.names, "slip", "law_damage"}
