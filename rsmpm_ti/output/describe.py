@@ -1,13 +1,16 @@
 """python -m rsmpm_ti.output.describe: prints docs/outputs.md, from the tables that the files are written from."""
 
 import sys
+import typing
 
+from rsmpm_ti.checks import members
 from rsmpm_ti.output.fracture_tables import ACOUSTIC, CRACKS, FRAGMENTS
 from rsmpm_ti.records.events import EVENTS
 from rsmpm_ti.records.history_table import HISTORY
 from rsmpm_ti.records.snapshot import PARTICLES
 from rsmpm_ti.records.summary_table import RECORD, SUMMARY
 from rsmpm_ti.records.tables import Table
+from rsmpm_ti.rock.rock import Rock
 
 HEAD = """\
 # What a run writes
@@ -45,7 +48,8 @@ def page() -> str:
         "| `particles.pvd` | list of the VTU files with their times; open this one in ParaView |\n",
         "| `checkpoint.npz` | from which `--resume` goes on |\n",
     ]
-    return "\n".join([HEAD + "".join(files), *map(section, TABLES), YOURS, TAIL])
+    sections = [section(table) + (of_laws() if table is PARTICLES else "") for table in TABLES]
+    return "\n".join([HEAD + "".join(files), *sections, YOURS, TAIL])
 
 
 YOURS = """\
@@ -77,6 +81,17 @@ def section(table: Table) -> str:
         about = f"{column.about} (only {column.only})" if column.only else column.about
         rows.append(f"| `{column.name}` | {column.unit} | {about} |")
     return "\n".join([f"## {table.file}", "", table.about, "", "| name | unit | meaning |", "|---|---|---|", *rows, ""])
+
+
+def of_laws() -> str:
+    """What the laws after failure of this package remember of a particle: more rows for the VTU table."""
+    rows = []
+    for law in members(typing.get_type_hints(Rock)["after_failure"]):
+        for variable in getattr(law, "history", ()):
+            name = f"law_{variable.name}" if variable.name in PARTICLES.names else variable.name
+            about = f"{variable.about}{', 3 components' if variable.per_axis else ''} (only `{law.__name__}`)"
+            rows.append(f"| `{name}` | {variable.unit} | {about} |\n")
+    return "".join(rows)
 
 
 if __name__ == "__main__":

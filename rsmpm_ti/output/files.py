@@ -35,7 +35,7 @@ def write_vtu(path: Path, snapshot: Snapshot) -> None:
 
     fields = {name: _as_point_data(a, snapshot.x.shape[1]) for name, a in PARTICLES.filled(snapshot, 3).items()}
     for name, entries in snapshot.history.items():
-        fields[f"law_{name}" if name in fields else name] = _single(entries)
+        fields[f"law_{name}" if name in fields else name] = _as_point_data(entries, snapshot.x.shape[1])
     mesh = meshio.Mesh(_padded(snapshot.x), [("vertex", np.arange(len(snapshot.x))[:, None])], point_data=fields)
     with complete(path) as part:
         meshio.write(part, mesh, file_format="vtu", binary=True, compression="zlib")
