@@ -1,5 +1,7 @@
 """The cube without a flaw: the uniform state whose modulus and strength are known exactly."""
 
+import math
+
 from rsmpm_ti import GPa, Hooke, MohrCoulomb, MPa, Rock, Scene, mm, uniaxial_test
 
 QUICK = {"dx": 1.0 * mm}
@@ -15,6 +17,7 @@ def scene(*, dx: float = 0.5 * mm, strain_end: float = 1.6e-3, time_scale: float
         title="Uniaxial test of an intact specimen",
         rock=rock,
         dx=dx,
-        strain_end=strain_end,  # a negative strain pulls: direct tension
+        speed=math.copysign(2.5e-3, strain_end),  # a negative strain pulls: direct tension
+        strain_end=strain_end,
         time_scale=time_scale,
     )

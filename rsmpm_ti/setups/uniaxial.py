@@ -1,7 +1,5 @@
 """Uniaxial compression or tension of a plate between two smooth platens."""
 
-import math
-
 from rsmpm_ti.rock.rock import Rock
 from rsmpm_ti.spec.boundaries import Platen
 from rsmpm_ti.spec.load_cell import LoadCell
@@ -32,14 +30,14 @@ def uniaxial_test(
     """A plate of width x height [m], its lower left corner at the origin, loaded along y from uniform straining on.
 
     flaws: slits cut into it, in the plate's coordinates; seeding: Lattice() by default; room: empty grid on both sides
-    [m], into which it may bulge and pieces may fly; speed: of each platen [m/s]; a negative strain_end pulls: direct
-    tension. cell: what is measured; by default the force of both platens over the width.
+    [m], into which it may bulge and pieces may fly; speed: at which each platen closes in [m/s];
+    a negative one, with a negative strain_end, pulls: direct tension. cell: what is measured; by default the force of
+    both platens over the width.
     """
-    closing = math.copysign(speed, strain_end)
     plate = Box(lower=(0.0, 0.0), upper=(width, height))
     platens = (
-        Platen(axis=1, side="lower", position=0.0, speed=closing),
-        Platen(axis=1, side="upper", position=height, speed=-closing),
+        Platen(axis=1, side="lower", position=0.0, speed=speed),
+        Platen(axis=1, side="upper", position=height, speed=-speed),
     )
     return Scene(
         title=title,
