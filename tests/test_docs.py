@@ -192,6 +192,17 @@ def test_scenes_are_built_as_commands_say(page, module, arguments):
         build(options)
 
 
+def test_options_named_apart_belong_to_some_command(capsys):
+    """`--kept` and the like, where no command is named beside it."""
+    known = "".join(help_of(f"rsmpm_ti.{name}", [], capsys) for name in COMMANDS)
+    known += "".join(
+        help_of("rsmpm_ti.bench", [part], capsys) for part in known_names("rsmpm_ti.bench") - {*available()}
+    )
+    lines = [line for page in PAGES for line in code_of(page) if not re.search(r"ruff|pytest|make|-march", line)]
+    options = {option for line in lines for option in re.findall(r"(?<![\w-])--[a-z][a-z-]+", line)}
+    assert sorted(option for option in options if not re.search(rf"{option}\b", known)) == []
+
+
 @each_page
 def test_settings_named_apart_are_fields_of_a_scene(page):
     """`--set schedule.cfl=0.3` and the like, where no scene is named."""
