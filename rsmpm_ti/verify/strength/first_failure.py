@@ -1,7 +1,8 @@
 """First failure of the two examples, with the paper's functions, against static solutions of the same functions.
 
 References: a static linear-elastic MPM with linear functions on the same lattice (solved as linear equations), which
-shares with the run its particles and functions but neither code, dynamics nor failure check.
+shares with the run its particles and functions but neither code, dynamics nor failure check: docs/references.md,
+section 15.
 """
 
 import math
