@@ -26,10 +26,10 @@ COMING = {"docs/outputs.md"}
 README_BYTES, MOVING_BYTES = 9000, 2_000_000
 
 COARSE = {
-    "dx": "0.002", "flaw_width": "0.006", "schedule.rows": "100",
+    "dx": "0.002", "flaw_width": "0.006", "strain_end": "2e-4", "shape": "Linear", "schedule.rows": "50",
     "output.frames": "2", "output.movie": "false", "output.vtu": "1",
 }  # fmt: skip
-"""Settings by which a snippet's `cube` runs in a second or two: a quarter of the cells, a flaw three of them wide."""
+"""Settings by which a snippet's `cube` runs in a second: few cells, a wide flaw, and what compiles fastest."""
 
 
 def name_of(page: Path) -> str:
@@ -259,10 +259,26 @@ def test_page_of_references_computes_its_numbers(folder):
     assert left["overshoot"] == pytest.approx(0.274, abs=5e-4)
 
 
+def recipe(*headings: str) -> str:
+    """The blocks below these headings of docs/extending.md, as one file."""
+    sections = re.split(r"^## ", (ROOT / "docs/extending.md").read_text(encoding="utf-8"), flags=re.MULTILINE)[1:]
+    found = {section.splitlines()[0]: re.findall(r"```python\n(.*?)```", section, re.DOTALL) for section in sections}
+    assert set(headings) <= set(found) and all(len(code) <= 1 for code in found.values())
+    return "\n\n".join(found[heading][0] for heading in headings)
+
+
+TOGETHER = ("Shape function", "Transfer", "Criterion", "Boundary", "Region", "Scene")
+
+APART = ("Law after failure", "Observer", "History column", "Load cell", "Verification case")
+
+
+def test_every_recipe_is_run():
+    assert len(blocks("docs/extending.md")) == len(TOGETHER) + len(APART)
+    assert all(recipe(heading) for heading in TOGETHER + APART)
+
+
 def test_recipes_make_one_scene_that_breaks(folder):
-    code = blocks("docs/extending.md")
-    recipes = "\n\n".join(code[: [k for k, block in enumerate(code) if "def scene(" in block][0] + 1])
-    (folder / "mine.py").write_text(recipes, encoding="utf-8")
+    (folder / "mine.py").write_text(recipe(*TOGETHER), encoding="utf-8")
     scene = load_scene("mine.py", dx=2.5e-3, strain_end=8e-4, settings={"schedule.rows": "50"})
     assert {type(part).__name__ for part in (scene.shape, scene.transfer, scene.rock.criterion)} == {
         "Blend", "LimitedFlip", "HoekBrown",
@@ -276,9 +292,44 @@ def test_recipes_make_one_scene_that_breaks(folder):
     assert result.summary["energy_balance_error"] < 0.02
 
 
+def waits_for(name: str):
+    """For a seam that another change brings; its recipe is run as soon as it is there."""
+    owner, _, attribute = name.rpartition(".")
+    return pytest.mark.skipif(not hasattr(importlib.import_module(owner), attribute), reason=f"{name} is to come")
+
+
+@waits_for("rsmpm_ti.rock.after_failure.AfterFailure")
+def test_recipe_of_a_law_remembers(folder):
+    left = run_block(folder, recipe("Law after failure"))
+    state = left["result"].snapshot
+    failed = state.failure_mode > 0
+    assert failed.any() and (state.history["age"][failed] > 0.0).all() and (state.history["age"][~failed] == 0.0).all()
+
+
+@waits_for("rsmpm_ti.Observer")
+def test_recipe_of_an_observer_sees_the_crack_go_down(folder):
+    depths = run_block(folder, recipe("Observer"))["deepest"].depths
+    assert len(depths) == 11 and depths == sorted(depths, reverse=True) and depths[-1] < 0.045 < depths[0]
+
+
+@waits_for("rsmpm_ti.Column")
+def test_recipe_of_a_column_is_in_the_history(folder):
+    speed = run_block(folder, recipe("History column"))["result"].history["fastest_m_s"]
+    assert (speed > 2.4e-3).all()  # no slower than the platens
+
+
+@waits_for("rsmpm_ti.LoadCell")
+def test_recipe_of_a_load_cell_reads_two_rollers_as_one_side(folder):
+    (folder / "bending.py").write_text(recipe("Load cell"), encoding="utf-8")
+    cell = load_scene("bending.py").loading.load_cell
+    assert (cell.lower, cell.upper) == ((0, 1), (2,))
+    load = cell.read(np.array([[0.0, 1e3], [0.0, 1e3], [0.0, -2e3]]))
+    assert (load.force_lower, load.force_upper) == (2e3, 2e3)
+    assert load.stress == pytest.approx(1.5 * 2e3 * 0.08 / 0.02**2)  # 3 F L/(2 h^2)
+
+
 def test_recipe_of_a_case_passes(folder, monkeypatch):
-    (code,) = [block for block in blocks("docs/extending.md") if "CASES" in block]
-    (folder / "my_cases.py").write_text(code, encoding="utf-8")
+    (folder / "my_cases.py").write_text(recipe("Verification case"), encoding="utf-8")
     monkeypatch.syspath_prepend(str(folder))
     rows = run_case("my_cases", "stiffness", full=False, out=None)
     assert rows and all(row.passed for row in rows)
