@@ -249,7 +249,8 @@ FREE, FIXED = (), (Wall(axis=1, side="lower", position=0.0), Wall(axis=1, side="
 """Ends of the bar."""
 
 CURVATURE = {"Linear": 1.0 / 8.0, "QuadraticBSpline": 1.0 / 4.0}
-"""omega/(c k) = 1 - CURVATURE (k h)^2 at two particles per cell; linear elements with lumped mass would have 1/24."""
+"""omega/(c k) = 1 - CURVATURE (k h)^2 at two particles per cell and cfl 0.5; linear elements with lumped mass would have
+1/24. The time step adds (1/4 - cfl^2)/24: docs/references.md, section 2."""
 
 
 def _frequencies(shape, order: str, waves: tuple[int, ...]) -> tuple[list, list]:
@@ -258,10 +259,10 @@ def _frequencies(shape, order: str, waves: tuple[int, ...]) -> tuple[list, list]
     found = [(length, vibrate(bar, length, 0.4, 5)) for length in waves]
     rows = []
     for length, vibration in found:
-        why = "terms of higher order and of the time step: 7 % at most by the one-step operator"
-        formula = CURVATURE[name] * (2.0 * math.pi / length) ** 2
+        why = "terms of fourth order, 1.7 % at 16 cells by the one-step operator; docs/references.md, section 2"
+        formula = (CURVATURE[name] + (0.25 - 0.4**2) / 24.0) * (2.0 * math.pi / length) ** 2
         quantity = f"{name}: frequency error, {length} cells per wave"
-        rows.append(relative(quantity, formula, 1.0 - vibration.speed, 0.15, why))
+        rows.append(relative(quantity, formula, 1.0 - vibration.speed, 0.03, why))
     for (_, coarse), (length, fine) in zip(found, found[1:], strict=False):
         why = "second order; the terms of fourth order are 1 % of it at 16 cells"
         ratio = (1.0 - coarse.speed) / (1.0 - fine.speed)
