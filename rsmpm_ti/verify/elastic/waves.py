@@ -249,8 +249,9 @@ FREE, FIXED = (), (Wall(axis=1, side="lower", position=0.0), Wall(axis=1, side="
 """Ends of the bar."""
 
 CURVATURE = {"Linear": 1.0 / 8.0, "QuadraticBSpline": 1.0 / 4.0}
-"""omega/(c k) = 1 - CURVATURE (k h)^2 at two particles per cell and cfl 0.5; linear elements with lumped mass would have
-1/24. The time step adds (1/4 - cfl^2)/24: docs/references.md, section 2."""
+"""omega/(c k) = 1 - CURVATURE (k h)^2 at two particles per cell and cfl 0.5; other steps add (1/4 - cfl^2)/24.
+
+docs/references.md, section 2. Linear elements with lumped mass would have 1/24."""
 
 
 def _frequencies(shape, order: str, waves: tuple[int, ...]) -> tuple[list, list]:
