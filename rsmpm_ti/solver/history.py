@@ -36,6 +36,14 @@ class History:
         """Kinetic and elastic energy with which the run started [J]."""
         return self._energy_start
 
+    @property
+    def failed(self) -> float:
+        """Failures up to the latest row."""
+        if not self._rows:
+            return 0.0
+        latest = dict(zip((column.name for column in self.columns), self._rows[-1], strict=True))
+        return latest["failed_tension"] + latest["failed_shear"]
+
     def record(self, survey: Survey) -> None:
         """Add a row of the particles as they are, of which this is a survey; raises as `see`."""
         self.see(View(self._sim, self._clock, survey, self))

@@ -136,6 +136,8 @@ def test_an_observer_that_raises_ends_the_run_in_one_line_and_all_else_is_writte
     rows = len((tmp_path / "history.csv").read_text().splitlines()) - 1
     assert other.seen[-1][2] == rows, "the look at which it failed is complete for the others"
     assert len([*tmp_path.glob("particles_*.vtu")]) == 1 and (tmp_path / "summary.png").exists()
+    with np.load(tmp_path / "checkpoint.npz") as kept:
+        assert kept["clock_step"] == other.seen[-1][0], "nothing of the run is lost"
     # mended, it goes on: it looks again at the next row, and nobody looks twice at one
     mended, again = Counts(0.25), Counts()
     result = simulate(scene(), out=tmp_path, threads=1, observers=(mended, again), resume=True)
