@@ -68,7 +68,7 @@ def numbers_of(run, view, fracture: Fracture, speed: float, stopped: str) -> dic
         "steps": run.clock.step,
         "dt_s": run.clock.dt,
         "wall_s": run.wall(),
-        "compile_s": run.compile_s,
+        "compile_s": run.started - run.begun,
         "painting_s": run.painting_s,
         "painting_cpu_s": writer.cpu_s if writer is not None else 0.0,
         "particle_steps_per_s": speed,

@@ -35,10 +35,10 @@ def simulate(
     """Run a scene to its end and write every file of a run into `out` (nothing is written when `out` is None).
 
     precision: 'f64' or 'f32'; arch: 'cpu' or 'cuda'; threads: CPU threads, all by default; deterministic: the same
-    bits whatever the number of threads, on one kind of machine; resume: go on from the
-    checkpoint in `out`, from the start where there is none; checkpoint_every: wall time between checkpoints [s];
-    progress: called after each history row; columns: more columns of the history (`Column`); observers: more observers
-    (`Observer`), whose states a checkpoint keeps. Ctrl-C and SIGTERM stop after the step and still write what there is.
+    bits whatever the number of threads, on one kind of machine; resume: go on from the checkpoint in `out`, from the
+    start where there is none; checkpoint_every: wall time between checkpoints [s]; progress: called after each history
+    row; columns: more columns of the history (`Column`); observers: more observers (`Observer`), whose states a
+    checkpoint keeps, to be given again, in the same order, to a run that resumes. Ctrl-C and SIGTERM stop after the step and still write what there is.
     Raises SceneError for input that cannot be run, before anything compiles, and when files cannot be written any
     more, and after writing everything up to there UnstableRun, or ObserverError where a column or observer raised.
     """
@@ -68,7 +68,7 @@ class Run:
     def __init__(self, scene: Scene, seeds, out: Path | None, settings: Settings, kept=None):
         self.scene, self.out, self.settings = scene, out, settings
         self.writer = None
-        self.compile_s = -time.perf_counter()
+        self.begun = time.perf_counter()
         if out is not None:  # first, since it gets ready while kernels compile here
             from rsmpm_ti.output.pictures import commission
             from rsmpm_ti.output.writer import Writer
@@ -153,7 +153,6 @@ class Run:
             self._row()
         ti.sync()
         self.started, self.painting_s, self.steps_before = time.perf_counter(), 0.0, self.clock.step
-        self.compile_s += self.started
 
     def _row(self) -> None:
         """Steps up to the next history row."""
