@@ -38,7 +38,8 @@ def simulate(
     bits whatever the number of threads, on one kind of machine; resume: go on from the checkpoint in `out`, from the
     start where there is none; checkpoint_every: wall time between checkpoints [s]; progress: called after each history
     row; columns: more columns of the history (`Column`); observers: more observers (`Observer`), whose states a
-    checkpoint keeps, to be given again, in the same order, to a run that resumes. Ctrl-C and SIGTERM stop after the step and still write what there is.
+    checkpoint keeps, to be given again, in the same order, to a run that resumes. Ctrl-C and SIGTERM stop after the
+    step and still write what there is.
     Raises SceneError for input that cannot be run, before anything compiles, and when files cannot be written any
     more, and after writing everything up to there UnstableRun, or ObserverError where a column or observer raised.
     """
