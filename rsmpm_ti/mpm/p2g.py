@@ -1,0 +1,121 @@
+"""Particles to nodes: mass, momentum and force of the nodes, eq. 7 to 10 of the paper.
+
+    m_i = sum_p w_ip m_p                                                        (8)
+    (m v)_i = sum_p w_ip m_p v_p                                                (7)
+    f_i = - sum_p V_p sigma_p . grad w_ip + sum_p w_ip m_p b_p                  (9) and (10)
+
+Indices: p particle, i node, ip pair. The paper's N_Ip is w_ip here. Its eq. 9 says deviatoric stress; the total stress
+is meant. Sums are taken run by run (see stencil.py) and row by row (see tensor_product.py).
+"""
+
+import taichi as ti
+
+from rsmpm_ti.fields.stencil import (
+    MAX_RUN,
+    coordinates,
+    run_stop,
+    scatter,
+    scatter_mass,
+    weights_and_gradients,
+)
+from rsmpm_ti.method.tensor_product import row_gradient, row_weight
+from rsmpm_ti.rock.tensors import isotropic, unpack
+
+
+@ti.func
+def particle_mass(sim: ti.template(), p):
+    return sim.density * sim.particles.volume[p]
+
+
+@ti.func
+def stress_on_nodes(sim: ti.template(), p):
+    """V_p (sigma_p - q + p), packed; p is the confining pressure, which acts on every surface: confinement.py."""
+    particles = sim.particles
+    sigma = particles.sigma[p] + isotropic(sim.confinement, particles.sigma.n)
+    if ti.static(particles.viscous):
+        sigma -= isotropic(particles.q[p], sigma.n)
+    return particles.volume[p] * particles.J[p] * sigma
+
+
+@ti.func
+def field_acceleration(sim: ti.template(), p, time):
+    """b(X_p, t) of the scene's force field [m/s^2]; mass scaling leaves its force unchanged."""
+    return sim.lightness * sim.force_field.acceleration(sim.particles.reference[p], ti.cast(time, float))
+
+
+@ti.func
+def add_mass(sim: ti.template(), p, w: ti.template(), m: ti.template()):
+    """m_i += w_ip m_p (paper eq. 8), to node sums m [stencil]."""
+    last = ti.static(sim.dim - 1)
+    for row, nodes in ti.static(sim.rows):
+        m_row = row_weight(w, row) * particle_mass(sim, p)
+        for k, _, i in ti.static(nodes):
+            m[i] += m_row * w[k, last]
+
+
+@ti.func
+def add_momentum(sim: ti.template(), p, w: ti.template(), xi, base, mv: ti.template()):
+    """(m v)_i += w_ip m_p v_p (paper eq. 7), to node sums mv [stencil, dim].
+
+    Particles with an affine matrix C have the velocity v_p + C (x_i - x_p) at a node.
+    """
+    particles, last = sim.particles, ti.static(sim.dim - 1)
+    m_p = particle_mass(sim, p)
+    momentum = m_p * particles.v[p]
+    for row, nodes in ti.static(sim.rows):
+        w_row = row_weight(w, row)
+        m_row, mv_row = w_row * m_p, w_row * momentum
+        for k, offset, i in ti.static(nodes):
+            mv_node = mv_row
+            if ti.static(particles.affine):
+                mv_node += m_row * (particles.C[p] @ ((base + ti.Vector(offset) - xi) * sim.grid.dx))
+            for e in ti.static(range(sim.dim)):
+                mv[i, e] += mv_node[e] * w[k, last]
+
+
+@ti.func
+def add_force(sim: ti.template(), p, w: ti.template(), dw: ti.template(), time, f: ti.template()):
+    """f_i += w_ip m_p b_p - V_p sigma_p . grad w_ip (paper eq. 10 and 9), to node sums f [stencil, dim].
+
+    With grad w_ip = (w_k grad w_row, w_row w_k'), sigma . grad w_ip = t_row w_k + t_last w_k', where t_row is the
+    stress on grad w_row, and t_last is w_row times the stress on the last axis. The body force joins t_row. A uniform
+    one is added at the nodes, where it costs less.
+    """
+    last = ti.static(sim.dim - 1)
+    sigma = unpack(stress_on_nodes(sim, p))
+    weight = particle_mass(sim, p) * field_acceleration(sim, p, time)
+    for row, nodes in ti.static(sim.rows):
+        w_row, dw_row = row_weight(w, row), row_gradient(w, dw, row)
+        t_row, t_last = -w_row * weight, ti.Vector.zero(float, sim.dim)
+        for e in ti.static(range(sim.dim)):
+            t_last[e] = sigma[e, last] * w_row
+            for d in ti.static(range(sim.dim - 1)):
+                t_row[e] += sigma[e, d] * dw_row[d]
+        for k, _, i in ti.static(nodes):
+            for e in ti.static(range(sim.dim)):
+                f[i, e] -= t_row[e] * w[k, last] + t_last[e] * dw[k, last]
+
+
+@ti.func
+def particles_to_nodes(sim: ti.template(), start, stop, slot, what: ti.template(), dt, time):
+    """Mass and momentum, force, or both, of particles [start, stop) to the nodes around their bases."""
+    first = start
+    while first < stop:
+        last = run_stop(sim, first, stop)
+        base = sim.grid.base_of(sim.particles.base[first])
+        m = ti.Vector.zero(float, sim.size)
+        mv, f = ti.Matrix.zero(float, sim.size, sim.dim), ti.Matrix.zero(float, sim.size, sim.dim)
+        for k in range((last - first) & MAX_RUN):
+            p = first + k
+            xi = coordinates(sim, p)
+            w, dw = weights_and_gradients(sim, xi, base)
+            add_mass(sim, p, w, m)
+            add_momentum(sim, p, w, xi, base, mv)
+            add_force(sim, p, w, dw, time - what.force_lag * dt, f)
+        # sums that are not asked for end here, and the compiler leaves them out
+        if ti.static(what.momentum):
+            scatter_mass(sim, base, m)
+            scatter(sim, sim.nodes.v, base, mv)
+        if ti.static(what.force):
+            scatter(sim, sim.nodes.f, base, f)
+        first = last
