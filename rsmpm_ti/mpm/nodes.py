@@ -1,7 +1,7 @@
 """What is done to nodes alone: clear them, turn momentum into velocity, add forces, apply boundaries.
 
-    v_i = (m v)_i / m_i                                   (paper eq. 7)
-    v_i <- v_i + dt (f_i / m_i + b)                       (momentum equation, paper eq. 2 and 5, on the nodes)
+v_i = (m v)_i / m_i                                   (paper eq. 7)
+v_i <- v_i + dt (f_i / m_i + b)                       (momentum equation, paper eq. 2 and 5, on the nodes)
 """
 
 import taichi as ti
@@ -76,18 +76,32 @@ def momentum_to_velocity(sim: ti.template(), factor: float):
 
 
 @ti.func
-def accelerate(sim: ti.template(), i, v_old, dt, factor):
-    """v_i <- v_old + dt (f_i/m_i + b), then boundaries, whose impulses and work go to the ledger.
+def over_mass(v, inverse):
+    """Velocity of a node whose v holds momentum."""
+    return v * inverse
 
-    f takes the velocity change of the step.
+
+@ti.func
+def as_it_is(v, inverse):
+    """Velocity of a node whose v holds it already."""
+    return v
+
+
+@ti.func
+def accelerate(sim: ti.template(), i, velocity: ti.template(), dt, factor):
+    """v_i <- v_i + dt (f_i/m_i + b), then boundaries, whose impulses and work go to the ledger.
+
+    f takes the velocity change of the step. `velocity`: one of the two above.
     """
     nodes, ledger = sim.nodes, sim.ledger
     m = nodes.mass[i]
     v, dv = ti.Vector.zero(float, sim.dim), ti.Vector.zero(float, sim.dim)
     if m > SMALL_MASS * full_cell(sim):
+        inverse = 1.0 / m
+        v_old = velocity(nodes.v[i], inverse)
         v = v_old
         if m > nodes.pushed_mass * full_cell(sim):
-            v += dt * (1.0 / m) * nodes.f[i]
+            v += dt * inverse * nodes.f[i]
         v += dt * ti.Vector(sim.acceleration)
         for b, boundary in ti.static(enumerate(sim.boundaries)):
             if boundary.holds(sim.grid.position(i), sim.grid.dx):
@@ -105,21 +119,19 @@ def accelerate(sim: ti.template(), i, v_old, dt, factor):
 
 @ti.func
 def update_node(sim: ti.template(), i, dt, factor):
-    """Of a node whose v holds momentum."""
-    accelerate(sim, i, 1.0 / sim.nodes.mass[i] * sim.nodes.v[i], dt, factor)
+    accelerate(sim, i, over_mass, dt, factor)
 
 
 @ti.func
 def update_node_and_clear(sim: ti.template(), i, dt, factor):
-    """The same, and v_remapped is cleared for the momentum that comes back from the particles."""
+    """And clear v_remapped for the momentum that comes back from the particles."""
     update_node(sim, i, dt, factor)
     sim.nodes.v_remapped[i] = ti.Vector.zero(float, sim.dim)
 
 
 @ti.func
 def update_moving_node(sim: ti.template(), i, dt, factor):
-    """Of a node whose v holds velocity already."""
-    accelerate(sim, i, sim.nodes.v[i], dt, factor)
+    accelerate(sim, i, as_it_is, dt, factor)
 
 
 @ti.func

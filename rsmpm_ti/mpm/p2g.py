@@ -23,11 +23,6 @@ from rsmpm_ti.rock.tensors import isotropic, unpack
 
 
 @ti.func
-def particle_mass(sim: ti.template(), p):
-    return sim.density * sim.particles.volume[p]
-
-
-@ti.func
 def stress_on_nodes(sim: ti.template(), p):
     """V_p (sigma_p - q + p), packed; p is the confining pressure, which acts on every surface: confinement.py."""
     particles = sim.particles
@@ -44,56 +39,78 @@ def field_acceleration(sim: ti.template(), p, time):
 
 
 @ti.func
-def add_mass(sim: ti.template(), p, w: ti.template(), m: ti.template()):
-    """m_i += w_ip m_p (paper eq. 8), to node sums m [stencil]."""
+def add_mass(sim: ti.template(), nodes: ti.template(), w: ti.template(), m_row, m: ti.template()):
+    """m_i += w_ip m_p (paper eq. 8), for the nodes of one row; m_row = w_row m_p."""
     last = ti.static(sim.dim - 1)
-    for row, nodes in ti.static(sim.rows):
-        m_row = row_weight(w, row) * particle_mass(sim, p)
-        for k, _, i in ti.static(nodes):
-            m[i] += m_row * w[k, last]
+    for k, _, i in ti.static(nodes):
+        m[i] += m_row * w[k, last]
 
 
 @ti.func
-def add_momentum(sim: ti.template(), p, w: ti.template(), xi, base, mv: ti.template()):
-    """(m v)_i += w_ip m_p v_p (paper eq. 7), to node sums mv [stencil, dim].
+def add_momentum(
+    sim: ti.template(), nodes: ti.template(), w: ti.template(), p, xi, base, m_row, mv_row, mv: ti.template()
+):
+    """(m v)_i += w_ip m_p v_p (paper eq. 7), for the nodes of one row; mv_row = w_row m_p v_p.
 
-    Particles with an affine matrix C have the velocity v_p + C (x_i - x_p) at a node.
+    A particle with an affine matrix C has the velocity v_p + C (x_i - x_p) at a node.
     """
     particles, last = sim.particles, ti.static(sim.dim - 1)
-    m_p = particle_mass(sim, p)
-    momentum = m_p * particles.v[p]
-    for row, nodes in ti.static(sim.rows):
-        w_row = row_weight(w, row)
-        m_row, mv_row = w_row * m_p, w_row * momentum
-        for k, offset, i in ti.static(nodes):
-            mv_node = mv_row
-            if ti.static(particles.affine):
-                mv_node += m_row * (particles.C[p] @ ((base + ti.Vector(offset) - xi) * sim.grid.dx))
-            for e in ti.static(range(sim.dim)):
-                mv[i, e] += mv_node[e] * w[k, last]
+    for k, offset, i in ti.static(nodes):
+        mv_node = mv_row
+        if ti.static(particles.affine):
+            mv_node += m_row * (particles.C[p] @ ((base + ti.Vector(offset) - xi) * sim.grid.dx))
+        for e in ti.static(range(sim.dim)):
+            mv[i, e] += mv_node[e] * w[k, last]
 
 
 @ti.func
-def add_force(sim: ti.template(), p, w: ti.template(), dw: ti.template(), time, f: ti.template()):
-    """f_i += w_ip m_p b_p - V_p sigma_p . grad w_ip (paper eq. 10 and 9), to node sums f [stencil, dim].
+def add_force(
+    sim: ti.template(), nodes: ti.template(), w: ti.template(), dw: ti.template(), t_row, t_last, f: ti.template()
+):
+    """f_i += w_ip m_p b_p - V_p sigma_p . grad w_ip (paper eq. 10 and 9) = -(t_row w_k + t_last w_k'), for one row."""
+    last = ti.static(sim.dim - 1)
+    for k, _, i in ti.static(nodes):
+        for e in ti.static(range(sim.dim)):
+            f[i, e] -= t_row[e] * w[k, last] + t_last[e] * dw[k, last]
 
-    With grad w_ip = (w_k grad w_row, w_row w_k'), sigma . grad w_ip = t_row w_k + t_last w_k', where t_row is the
-    stress on grad w_row, and t_last is w_row times the stress on the last axis. The body force joins t_row. A uniform
-    one is added at the nodes, where it costs less.
+
+@ti.func
+def add_particle(
+    sim: ti.template(),
+    p,
+    xi,
+    base,
+    w: ti.template(),
+    dw: ti.template(),
+    time,
+    m: ti.template(),
+    mv: ti.template(),
+    f: ti.template(),
+):
+    """Add one particle to node sums m [stencil], mv and f [stencil, dim].
+
+    With w_ip = w_row w_k and grad w_ip = (w_k grad w_row, w_row w_k') (see tensor_product.py),
+
+        V sigma . grad w_ip - w_ip m b = t_row w_k + t_last w_k',
+        t_row = V sigma[:, :-1] . grad w_row - w_row m b,    t_last = w_row V sigma[:, -1].
+
+    A uniform body force is added at the nodes, where it costs less.
     """
     last = ti.static(sim.dim - 1)
-    sigma = unpack(stress_on_nodes(sim, p))
-    weight = particle_mass(sim, p) * field_acceleration(sim, p, time)
+    m_p = sim.density * sim.particles.volume[p]
+    mv_p, sigma = m_p * sim.particles.v[p], unpack(stress_on_nodes(sim, p))
+    weight = m_p * field_acceleration(sim, p, time)
     for row, nodes in ti.static(sim.rows):
         w_row, dw_row = row_weight(w, row), row_gradient(w, dw, row)
+        m_row, mv_row = w_row * m_p, w_row * mv_p
         t_row, t_last = -w_row * weight, ti.Vector.zero(float, sim.dim)
         for e in ti.static(range(sim.dim)):
             t_last[e] = sigma[e, last] * w_row
             for d in ti.static(range(sim.dim - 1)):
                 t_row[e] += sigma[e, d] * dw_row[d]
-        for k, _, i in ti.static(nodes):
-            for e in ti.static(range(sim.dim)):
-                f[i, e] -= t_row[e] * w[k, last] + t_last[e] * dw[k, last]
+        add_mass(sim, nodes, w, m_row, m)
+        add_momentum(sim, nodes, w, p, xi, base, m_row, mv_row, mv)
+        add_force(sim, nodes, w, dw, t_row, t_last, f)
 
 
 @ti.func
@@ -109,9 +126,7 @@ def particles_to_nodes(sim: ti.template(), start, stop, slot, what: ti.template(
             p = first + k
             xi = coordinates(sim, p)
             w, dw = weights_and_gradients(sim, xi, base)
-            add_mass(sim, p, w, m)
-            add_momentum(sim, p, w, xi, base, mv)
-            add_force(sim, p, w, dw, time - what.force_lag * dt, f)
+            add_particle(sim, p, xi, base, w, dw, time - what.force_lag * dt, m, mv, f)
         # sums that are not asked for end here, and the compiler leaves them out
         if ti.static(what.momentum):
             scatter_mass(sim, base, m)

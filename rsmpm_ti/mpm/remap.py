@@ -9,7 +9,7 @@ import taichi as ti
 from rsmpm_ti.fields.stencil import MAX_RUN, coordinates, gather, run_stop, scatter, weights_and_gradients
 from rsmpm_ti.mpm.g2p import velocity_to_particle
 from rsmpm_ti.mpm.nodes import clear_node, over_nodes, velocity_of
-from rsmpm_ti.mpm.p2g import add_momentum
+from rsmpm_ti.mpm.p2g import add_particle
 from rsmpm_ti.mpm.wall_nodes import extend, fold
 
 
@@ -22,13 +22,15 @@ def remap_span(sim: ti.template(), start, stop, slot, what: ti.template(), dt, t
         last = run_stop(sim, first, stop)
         base = sim.grid.base_of(sim.particles.base[first])
         v_i, dv_i = gather(sim, nodes.v, base), gather(sim, nodes.f, base)
-        mv = ti.Matrix.zero(float, sim.size, sim.dim)
+        m = ti.Vector.zero(float, sim.size)
+        mv, f = ti.Matrix.zero(float, sim.size, sim.dim), ti.Matrix.zero(float, sim.size, sim.dim)
         for k in range((last - first) & MAX_RUN):
             p = first + k
             xi = coordinates(sim, p)
             w, dw = weights_and_gradients(sim, xi, base)
             velocity_to_particle(sim, p, w, xi, base, v_i, dv_i)
-            add_momentum(sim, p, w, xi, base, mv)
+            add_particle(sim, p, xi, base, w, dw, 0.0, m, mv, f)
+        # mass is the same, and force comes from the new stress: the compiler leaves their sums out
         scatter(sim, nodes.v_remapped, base, mv)
         first = last
 

@@ -1,4 +1,4 @@
-"""Whole time steps against a plain NumPy loop over particles and nodes, and what transfers must keep exactly."""
+"""Whole time steps against plain NumPy over particles and nodes, and what transfers must keep exactly."""
 
 import itertools
 from types import SimpleNamespace
@@ -7,7 +7,6 @@ import numpy as np
 import pytest
 import taichi as ti
 from harness import epsilon, name_of, variants
-from plain_mpm import Reference
 
 from rsmpm_ti.fields.cell_order import sort_particles
 from rsmpm_ti.fields.parallel import REACH, Slabs
@@ -15,7 +14,8 @@ from rsmpm_ti.fields.state import Simulation
 from rsmpm_ti.method.shape import Gimp, Linear, QuadraticBSpline
 from rsmpm_ti.method.transfer import Apic, PicFlip
 from rsmpm_ti.mpm.nodes import clear_nodes
-from rsmpm_ti.mpm.stepper import ORDERS, scatter_all
+from rsmpm_ti.mpm.plain import PlainStep
+from rsmpm_ti.mpm.stepper import LOAD, ORDERS, scatter_all
 from rsmpm_ti.mpm.wall_nodes import fold
 from rsmpm_ti.rock.criteria import Unbreakable
 from rsmpm_ti.rock.elasticity import Hooke
@@ -119,16 +119,16 @@ def fold_sums(sim: ti.template()):
 
 def compare_step(scene: Scene, sim: Simulation) -> None:
     state = cloud(scene, sim)
-    reference, dt, eps = Reference(sim, state), scene.dt, epsilon(sim.real)
+    plain, dt, eps = PlainStep(scene, state), scene.dt, epsilon(sim.real)
     clear_nodes(sim)
-    scatter_all(sim, True, True, 0.0)
+    scatter_all(sim, LOAD, 0.0)
     fold_sums(sim)
     size = -1, scene.dim
-    close(sim.nodes.mass.to_numpy().ravel(), reference.mass, eps, 100)
-    close(sim.nodes.v.to_numpy().reshape(size), reference.momentum(), eps, 100)
-    close(sim.nodes.f.to_numpy().reshape(size), reference.force(), eps, 100)
+    close(sim.nodes.mass.to_numpy().ravel(), plain.mass, eps, 100)
+    close(sim.nodes.v.to_numpy().reshape(size), plain.momentum(), eps, 100)
+    close(sim.nodes.f.to_numpy().reshape(size), plain.internal_force(), eps, 100)
     ORDERS[scene.order](sim, dt, 0.0, [1.0])
-    reference.step(scene.order, dt)
+    plain.step(dt)
     for name in ("u", "v", "sigma", "J", *("C",) * sim.particles.affine, *("q",) * sim.particles.viscous):
         close(by_id(sim, name), getattr(state, name), eps)
 
@@ -176,7 +176,7 @@ def test_momentum_of_a_free_body_is_conserved_to_round_off(simulations, scene):
     mass = sim.density * state.volume[:, None]
     start = np.sum(mass * state.v, axis=0)
     if scene.transfer.affine:  # sum w_ip (x_i - x_p) = 0: the affine part carries none
-        start = Reference(sim, state).momentum().sum(axis=0)
+        start = PlainStep(scene, state).momentum().sum(axis=0)
     ORDERS[scene.order](sim, scene.dt, 0.0, [1.0] * 5)
     v = by_id(sim, "v")
     assert np.abs(np.sum(mass * v, axis=0) - start).max() < 1e-12 * np.sum(mass * np.abs(v))
@@ -218,7 +218,7 @@ def test_strayed_particles_reach_the_same_nodes_as_after_sorting_again(simulatio
     found = []
     for _ in range(2):
         clear_nodes(sim)
-        scatter_all(sim, True, True, 0.0)
+        scatter_all(sim, LOAD, 0.0)
         found.append([f.to_numpy() for f in (sim.nodes.mass, sim.nodes.v, sim.nodes.f)])
         sort_particles(sim)
     assert found[0][0].sum() == pytest.approx(COUNT * sim.density * (0.5 * DX) ** 2, rel=1e-12)

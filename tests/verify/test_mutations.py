@@ -62,7 +62,7 @@ MUTATIONS = {
     "usl in place of musl": (
         [
             ("mpm/stepper.py", '"musl": musl,', '"musl": usl,'),
-            ("fields/state.py", 'self.remap = scene.order == "musl"', "self.remap = False"),
+            ("fields/nodes.py", 'self.remap = scene.order == "musl"', "self.remap = False"),
         ],
         "vibration",
     ),
