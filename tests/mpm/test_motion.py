@@ -17,6 +17,8 @@ from rsmpm_ti.run.run import simulate
 from rsmpm_ti.spec.regions import Box, Disc
 from rsmpm_ti.spec.scene import Body, Domain, Loading, Scene, Schedule
 
+pytestmark = pytest.mark.usefixtures("every_traversal")
+
 STONE = Rock(density=2600.0, elasticity=Hooke(E=17e9, nu=0.14), criterion=Unbreakable())
 
 

@@ -9,7 +9,7 @@ import taichi as ti
 from harness import epsilon, name_of, variants
 
 from rsmpm_ti.fields.cell_order import sort_particles
-from rsmpm_ti.fields.parallel import REACH, Slabs
+from rsmpm_ti.fields.parallel import REACH, Chunks, Single, Slabs, traversal
 from rsmpm_ti.fields.state import Simulation
 from rsmpm_ti.method.shape import Gimp, Linear, QuadraticBSpline
 from rsmpm_ti.method.transfer import Apic, PicFlip
@@ -36,7 +36,7 @@ every_shape = pytest.mark.parametrize("shape", variants(Scene, "shape"), ids=nam
 every_transfer = pytest.mark.parametrize("transfer", variants(Scene, "transfer"), ids=name_of)
 
 
-def make_scene(shape, transfer, *, order="musl", cells=CELLS, boundaries=(), viscosity=None) -> Scene:
+def make_scene(shape, transfer, *, order="musl", cells=CELLS, boundaries=(), viscosity=None, body_force=None) -> Scene:
     dim = len(cells)
     upper = tuple(c * DX for c in cells)
     return Scene(
@@ -49,7 +49,7 @@ def make_scene(shape, transfer, *, order="musl", cells=CELLS, boundaries=(), vis
             criterion=Unbreakable(),
             viscosity=viscosity or NoViscosity(),
         ),
-        loading=Loading(boundaries=boundaries),
+        loading=Loading(boundaries=boundaries, body_force=body_force),
         schedule=Schedule(t_end=1e-6, cfl=0.3),
         shape=shape,
         transfer=transfer,
@@ -58,7 +58,7 @@ def make_scene(shape, transfer, *, order="musl", cells=CELLS, boundaries=(), vis
 
 
 @pytest.fixture(scope="module")
-def simulations(taichi_f64):
+def simulations(every_traversal):
     """Scene -> Simulation: kernels compile once for each, so tests share them."""
     return {}
 
@@ -90,14 +90,29 @@ def put(sim: Simulation, state: SimpleNamespace) -> None:
     sort_particles(sim)
 
 
-def simulation(scene: Scene, real=ti.f64) -> Simulation:
-    return Simulation(scene, [Seeds(np.zeros((COUNT, scene.dim)), np.zeros(COUNT))], real)
+def simulation(scene: Scene, real=ti.f64, gpu=False) -> Simulation:
+    """gpu: with the GPU's traversal, on the CPU."""
+    return Simulation(scene, [Seeds(np.zeros((COUNT, scene.dim)), np.zeros(COUNT))], real, gpu)
 
 
 def shared(simulations: dict, scene: Scene) -> Simulation:
     if scene not in simulations:
         simulations[scene] = simulation(scene)
     return simulations[scene]
+
+
+def test_each_traversal_is_taken(simulations, every_traversal):
+    sim = shared(simulations, free_scene(Linear(), PicFlip(flip=0.3)))
+    assert type(sim.traversal).__name__ == every_traversal
+
+
+@pytest.mark.parametrize(
+    ("threads", "gpu", "deterministic", "expected"),
+    [(1, False, False, Single), (2, False, False, Slabs), (1, False, True, Slabs), (2, True, False, Chunks)],
+)
+def test_device_and_threads_choose_the_traversal(restart_taichi, threads, gpu, deterministic, expected):
+    restart_taichi(ti.f64, threads)
+    assert type(traversal(100, gpu, deterministic)) is expected
 
 
 def by_id(sim: Simulation, name: str) -> np.ndarray:
@@ -133,8 +148,8 @@ def compare_step(scene: Scene, sim: Simulation) -> None:
         close(by_id(sim, name), getattr(state, name), eps)
 
 
-def free_scene(shape, transfer, order="musl") -> Scene:
-    return make_scene(shape, transfer, order=order, viscosity=BulkViscosity())
+def free_scene(shape, transfer, order="musl", body_force=None) -> Scene:
+    return make_scene(shape, transfer, order=order, viscosity=BulkViscosity(), body_force=body_force)
 
 
 def walled_scene(shape) -> Scene:
@@ -150,10 +165,18 @@ def test_musl_step_is_that_of_a_plain_loop(simulations, shape, transfer):
 
 
 OTHER_ORDERS = [free_scene(QuadraticBSpline(), Apic(), "usf"), free_scene(Gimp(), PicFlip(flip=0.3), "usl")]
+WEIGHT = (3e8, -1e9)
+"""A body force [m/s^2] that changes velocities of 1 m/s by as much in a step."""
 
 
 @pytest.mark.parametrize("scene", OTHER_ORDERS, ids=lambda scene: scene.order)
 def test_step_of_the_other_orders_is_that_of_a_plain_loop(simulations, scene):
+    compare_step(scene, shared(simulations, scene))
+
+
+@pytest.mark.parametrize("order", ORDERS)
+def test_step_under_a_body_force_is_that_of_a_plain_loop(simulations, order):
+    scene = free_scene(Gimp(), PicFlip(flip=0.3), order, WEIGHT)
     compare_step(scene, shared(simulations, scene))
 
 
@@ -271,13 +294,14 @@ def test_sorting_changes_no_particle_and_puts_them_into_cell_order(simulations):
         np.testing.assert_array_equal(by_id(sim, name), getattr(state, name), err_msg=name)
 
 
-def test_one_thread_and_two_give_the_same_step_in_single_precision(restart_taichi):
-    """And that of the plain loop: f32 is compared here. Two threads meet at the border of their slabs."""
+def test_step_in_single_precision_is_that_of_a_plain_loop_and_the_same_by_every_traversal(restart_taichi):
+    """Two threads meet at the border of their slabs."""
     scene, found = free_scene(Linear(), PicFlip(flip=0.3)), []
-    for threads in (1, 2):
+    for threads, gpu in ((1, False), (2, False), (2, True)):
         restart_taichi(ti.f32, threads)
-        sim = simulation(scene, ti.f32)
+        sim = simulation(scene, ti.f32, gpu)
         compare_step(scene, sim)
         found.append([by_id(sim, name) for name in ("v", "sigma", "u")])
-    for one, two in zip(*found, strict=True):
-        close(two, one, epsilon(ti.f32))
+    for one, *others in zip(*found, strict=True):
+        for other in others:
+            close(other, one, epsilon(ti.f32))
