@@ -160,8 +160,9 @@ def over_particles(
 ):
     """Do work(sim, start, stop, slot, what, dt, time) for every span [start, stop) of particles, each on one thread.
 
-    A thread's span is called in the scope that calls the work: a loop that is the first in its scope to touch a field
-    gets no vector instructions.
+    Two things keep the vector instructions of loops in `work`. The span is asked for in the scope that does the work: a
+    loop that is the first in its scope to touch a field gets none. And dt, time and ticket are templates: Taichi would
+    copy numbers to memory that all threads share, and a loop that reads them there while it writes gets none either.
     """
     ti.loop_config(serialize=sim.traversal.serial, block_dim=sim.traversal.block)
     for t in range(sim.traversal.items):

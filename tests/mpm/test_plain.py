@@ -1,6 +1,7 @@
 """The plain step that the passes are held to: its shape functions, and what it shares with no kernel."""
 
 import ast
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -26,7 +27,7 @@ def test_it_knows_every_transfer():
 
 def test_it_calls_no_kernel():
     """Of the package it takes a scene and the node counts of its grid alone, and no Taichi."""
-    tree = ast.parse(open(plain.__file__, encoding="utf-8").read())
+    tree = ast.parse(Path(plain.__file__).read_text(encoding="utf-8"))
     taken = {node.module for node in ast.walk(tree) if isinstance(node, ast.ImportFrom)}
     taken |= {alias.name for node in ast.walk(tree) if isinstance(node, ast.Import) for alias in node.names}
     assert taken == {"types", "numpy", "rsmpm_ti.fields.grid", "rsmpm_ti.spec.scene"}
