@@ -10,14 +10,7 @@ is meant. Sums are taken run by run (see stencil.py) and row by row (see tensor_
 
 import taichi as ti
 
-from rsmpm_ti.fields.stencil import (
-    MAX_RUN,
-    coordinates,
-    run_stop,
-    scatter,
-    scatter_mass,
-    weights_and_gradients,
-)
+from rsmpm_ti.fields.stencil import MAX_RUN, coordinates, run_stop, scatter, scatter_mass, weights_and_gradients
 from rsmpm_ti.method.tensor_product import row_gradient, row_weight
 from rsmpm_ti.rock.tensors import isotropic, unpack
 
@@ -26,9 +19,11 @@ from rsmpm_ti.rock.tensors import isotropic, unpack
 def stress_on_nodes(sim: ti.template(), p):
     """V_p (sigma_p - q + p), packed; p is the confining pressure, which acts on every surface: confinement.py."""
     particles = sim.particles
-    sigma = particles.sigma[p] + isotropic(sim.confinement, particles.sigma.n)
+    sigma = particles.sigma[p]
     if ti.static(particles.viscous):
         sigma -= isotropic(particles.q[p], sigma.n)
+    if ti.static(sim.confined):
+        sigma += isotropic(sim.confinement, sigma.n)
     return particles.volume[p] * particles.J[p] * sigma
 
 
@@ -127,7 +122,7 @@ def particles_to_nodes(sim: ti.template(), start, stop, slot, what: ti.template(
             xi = coordinates(sim, p)
             w, dw = weights_and_gradients(sim, xi, base)
             add_particle(sim, p, xi, base, w, dw, time - what.force_lag * dt, m, mv, f)
-        # sums that are not asked for end here, and the compiler leaves them out
+        # what is not asked for ends here, and the compiler leaves its sums out
         if ti.static(what.momentum):
             scatter_mass(sim, base, m)
             scatter(sim, sim.nodes.v, base, mv)
