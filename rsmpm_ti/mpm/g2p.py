@@ -6,7 +6,7 @@ same way: v_pic = sum_i w_ip v_i, and its gradient is L = sum_i v_i (x) grad w_i
 
 import taichi as ti
 
-from rsmpm_ti.failure.stress_update import check_and_release, check_failure, must_check, update_stress
+from rsmpm_ti.failure.stress_update import check_failure, must_check, update_stress
 from rsmpm_ti.fields.stencil import (
     MAX_RUN,
     coordinates,
@@ -97,7 +97,4 @@ def new_stress(sim: ti.template(), start, stop, slot, what: ti.template(), dt, t
     if ti.static(sim.particles.breaks):
         if found > 0:  # else no particle here has failed or is about to
             for p in range(start, stop):
-                if ti.static(sim.particles.cracks):
-                    check_and_release(sim, p, dt, time, slot)
-                else:
-                    check_failure(sim, p, time, slot)
+                check_failure(sim, p, dt, time, slot)
