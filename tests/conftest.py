@@ -4,6 +4,8 @@ import pytest
 import taichi as ti
 
 from rsmpm_ti.backend.taichi_patches import hasten_compiling
+from rsmpm_ti.fields import state
+from rsmpm_ti.fields.parallel import Chunks, Single, Slabs
 
 
 def start(real, threads: int = 2) -> None:
@@ -33,3 +35,19 @@ def restart_taichi():
     """start(real, threads): Taichi again, inside a test; fields are gone at every call. Ends with two threads, f64."""
     yield start
     start(ti.f64)
+
+
+TRAVERSALS = {
+    "Single": Single,
+    "Slabs": lambda particle_count: Slabs(2, ordered=False),
+    "Chunks": Chunks,  # the GPU's; it runs on a CPU too
+}
+
+
+@pytest.fixture(scope="module", params=TRAVERSALS)
+def every_traversal(request):
+    """The module's tests over each way to go over particles in turn; Taichi in double precision; gives its name."""
+    start(ti.f64)
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(state, "traversal", lambda count, gpu, deterministic: TRAVERSALS[request.param](count))
+        yield request.param

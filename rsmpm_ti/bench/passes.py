@@ -11,16 +11,16 @@ def passes(shape: str, threads: int, rounds: int) -> str:
     from rsmpm_ti.backend.start import start_taichi
     from rsmpm_ti.bench.workers import Runner, simulation
     from rsmpm_ti.mpm.nodes import update_nodes
-    from rsmpm_ti.mpm.passes import g2p, musl_step, p2g
-    from rsmpm_ti.mpm.stepper import MOVE, MOVE_AND_LOAD, Pass
+    from rsmpm_ti.mpm.passes import Pass, g2p, musl_step, p2g
+    from rsmpm_ti.mpm.stepper import LOAD, MOVE, MOVE_AND_LOAD
 
     real, _ = start_taichi("f64", "cpu", threads)
     drive = simulation(Runner("solver", shape), real)
     drive.advance(3)
     sim, ticket = drive.sim, drive.sim.traversal.ticket
     parts = {
-        "particles to nodes": lambda: p2g(sim, True, True, 0.0, ticket()),
-        "node update": lambda: update_nodes(sim, True, 0.0, 0.0),
+        "particles to nodes": lambda: p2g(sim, LOAD, 0.0, ticket()),
+        "node update": lambda: update_nodes(sim, 0.0, 0.0),
         "positions": lambda: g2p(sim, Pass(position=True), 0.0, 0.0, ticket()),
         "gradient, stress, check": lambda: g2p(sim, Pass(stress=True), 0.0, 0.0, ticket()),
         "positions, gradient, stress, check": lambda: g2p(sim, MOVE, 0.0, 0.0, ticket()),

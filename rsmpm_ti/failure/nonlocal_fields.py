@@ -5,6 +5,7 @@
 
 import taichi as ti
 
+from rsmpm_ti.fields.parallel import over_particles
 from rsmpm_ti.fields.stencil import coordinates, weights_at
 from rsmpm_ti.method.tensor_product import tensor_gradient, tensor_weight
 from rsmpm_ti.rock.tensors import extreme_principals
@@ -20,26 +21,25 @@ def clear_means(sim: ti.template()):
         sim.means.count[None], sim.means.any_overloaded[None] = 0, 0
 
 
-@ti.kernel
-def spread_stress(sim: ti.template(), ticket: int):
+@ti.func
+def add_stress(sim: ti.template(), start, stop, slot, what: ti.template(), dt, time):
     """sum w_ip V_p sigma_p, sum w_ip V_p and sum w_ip V_p e_p to nodes; e: largest opening strain across the crack."""
     particles = sim.particles
-    ti.loop_config(serialize=sim.traversal.serial, block_dim=sim.traversal.block)
-    for t in range(sim.traversal.items):
-        if t % sim.traversal.stride == 0:
-            for part in range(sim.traversal.parts):
-                start, stop, _ = sim.traversal.span(t, part, ticket)
-                for p in range(start, stop):
-                    xi = coordinates(sim, p)
-                    base = sim.grid.base(xi, sim.shape)
-                    w, dw = weights_at(sim, xi, base)
-                    sigma, V_p = particles.sigma[p], particles.volume[p] * particles.J[p]
-                    strain = particles.history.crack_strain_max[p][0]
-                    carried = V_p * ti.Vector([sigma[0], sigma[1], sigma[2], sigma[3], 1.0, strain])
-                    for offset in ti.static(sim.stencil):
-                        i = base + ti.Vector(offset)
-                        sim.traversal.add(sim.means.sums, i, tensor_weight(w, offset) * carried)
-                sim.traversal.done(t, part, ticket)
+    for p in range(start, stop):
+        xi = coordinates(sim, p)
+        base = sim.grid.base(xi, sim.shape)
+        w, dw = weights_at(sim, xi, base)
+        sigma, V_p = particles.sigma[p], particles.volume[p] * particles.J[p]
+        strain = particles.history.crack_strain_max[p][0]
+        carried = V_p * ti.Vector([sigma[0], sigma[1], sigma[2], sigma[3], 1.0, strain])
+        for offset in ti.static(sim.stencil):
+            i = base + ti.Vector(offset)
+            sim.traversal.add(sim.means.sums, i, tensor_weight(w, offset) * carried)
+
+
+@ti.kernel
+def spread_stress(sim: ti.template(), ticket: int):
+    over_particles(sim, add_stress, None, 0.0, 0.0, ticket)
 
 
 @ti.kernel

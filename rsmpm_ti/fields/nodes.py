@@ -9,23 +9,38 @@ from rsmpm_ti.spec.scene import Scene
 BLOCK = 8
 """Cells per axis of a sparse block."""
 
+SMALL_MASS = 1e-24
+"""Nodes lighter than this fraction of a full cell hold nothing: what they are made of is round-off.
+
+A particle that reaches a fraction r of a cell into a node's support gives it r^2/2 by B-splines and GIMP, and has a
+gradient of r there: a node that was dropped at 1e-12 took 1e-6 of the speed from its velocity gradient.
+"""
+
+PUSHED_MASS = 1e-12
+"""With `usl`, nodes lighter than this fraction of a full cell take no force. What a force of r does to r^2/2 is 1/r,
+and `usl` takes it into the gradient, times r: a node just reached would strain its particle as much as any other.
+"""
+
 
 @ti.data_oriented
 class Nodes:
     """Node fields, interleaved in memory. `sparse` places them under pointer blocks.
 
-    v holds momentum until the nodes are updated, then velocity; f holds force, then the velocity change of the step;
-    w and u (musl only) the momentum, then velocity, mapped back from moved particles, and the velocity v of the step,
-    by which particles move, while v takes the next step's momentum.
+    v holds momentum until the nodes are updated, then velocity; f holds force, then the velocity change of the step.
+    With `musl`, v takes the next step's momentum while particles still move by this step's velocity, which v_moving
+    keeps; v_remapped holds the momentum, then the velocity, mapped back from particles with their new velocities. With
+    the other orders both are v itself.
     """
 
     def __init__(self, scene: Scene, grid: Grid, real, sparse: bool):
         self.mass = ti.field(real)
         self.v, self.f = ti.Vector.field(grid.dim, real), ti.Vector.field(grid.dim, real)
+        self.v_remapped = self.v_moving = self.v
         self.remap = scene.order == "musl"
-        self.w = self.u = self.v
         if self.remap:
-            self.w, self.u = ti.Vector.field(grid.dim, real), ti.Vector.field(grid.dim, real)
+            self.v_remapped, self.v_moving = ti.Vector.field(grid.dim, real), ti.Vector.field(grid.dim, real)
+        # lightest node that takes a force, as a fraction of a full cell
+        self.pushed_mass = PUSHED_MASS if scene.order == "usl" else SMALL_MASS
         axes = (ti.ij, ti.ijk)[grid.dim - 2]
         self.sparse, self.blocks = sparse, None
         if sparse:
@@ -34,10 +49,11 @@ class Nodes:
             parent = self.blocks.dense(axes, (BLOCK,) * grid.dim)
         else:
             parent = ti.root.dense(axes, grid.nodes)
-        parent.place(self.mass, self.v, self.f, *((self.w, self.u) if self.remap else ()))
+        parent.place(self.mass, self.v, self.f, *((self.v_remapped, self.v_moving) if self.remap else ()))
 
         # the same fields by component
-        self.v_columns, self.f_columns, self.w_columns = (components(field) for field in (self.v, self.f, self.w))
+        self.v_columns, self.f_columns = components(self.v), components(self.f)
+        self.v_remapped_columns = components(self.v_remapped)
         self.momentum_columns = (self.mass, *self.v_columns)
 
     def forget_empty(self) -> None:

@@ -102,7 +102,7 @@ class Single:
 
     @ti.func
     def span(self, t, part, ticket):
-        return 0, self.stop[None], 0  # from a field, so that it is the first one touched: see passes.py
+        return 0, self.stop[None], 0  # from a field, so that it is the first one touched: see over_particles
 
     @ti.func
     def done(self, t, part, ticket):
@@ -147,6 +147,30 @@ class Chunks:
 
     def refresh(self, first_row) -> None:
         self.stop[None] = len(first_row)
+
+
+@ti.func
+def over_particles(
+    sim: ti.template(),
+    work: ti.template(),
+    what: ti.template(),
+    dt: ti.template(),
+    time: ti.template(),
+    ticket: ti.template(),
+):
+    """Do work(sim, start, stop, slot, what, dt, time) for every span [start, stop) of particles, each on one thread.
+
+    Two things keep the vector instructions of loops in `work`. The span is asked for in the scope that does the work: a
+    loop that is the first in its scope to touch a field gets none. And dt, time and ticket are templates: Taichi would
+    copy numbers to memory that all threads share, and a loop that reads them there while it writes gets none either.
+    """
+    ti.loop_config(serialize=sim.traversal.serial, block_dim=sim.traversal.block)
+    for t in range(sim.traversal.items):
+        if t % sim.traversal.stride == 0:
+            for part in range(sim.traversal.parts):
+                start, stop, slot = sim.traversal.span(t, part, ticket)
+                work(sim, start, stop, slot, what, dt, time)
+                sim.traversal.done(t, part, ticket)
 
 
 def traversal(particle_count: int, gpu: bool, deterministic: bool) -> Slabs | Single | Chunks:

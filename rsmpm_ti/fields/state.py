@@ -24,6 +24,15 @@ FEW_NODES = 50_000
 
 
 @ti.data_oriented
+class NoForceField:
+    """In place of a scene's force field; the compiler leaves out what is multiplied by zero."""
+
+    @ti.func
+    def acceleration(self, X, t):
+        return ti.Vector.zero(float, X.n)
+
+
+@ti.data_oriented
 class Simulation:
     """Everything kernels need, as one object: a kernel launch then looks up one template argument, not ten."""
 
@@ -42,11 +51,10 @@ class Simulation:
         self.density, self.wave_speed = scene.density * self.J_start, scene.wave_speed
         # mass scaling must leave the weight of a body unchanged, so its acceleration shrinks as its density grows
         force = scene.loading.body_force or (0.0,) * scene.dim
-        self.heavy = any(component != 0.0 for component in force)
         self.lightness = 1.0 / scene.time_scale**2
         self.acceleration = tuple(component * self.lightness for component in force)
-        self.force_field = scene.loading.force_field
-        self.driven = self.force_field is not None
+        self.force_field = scene.loading.force_field or NoForceField()
+        self.loaded = any(component != 0.0 for component in force) or scene.loading.force_field is not None
         self.grid = Grid(scene)
         self.drops = scene.domain.outside == "drop"
         self.outside_is_sick = 0 if self.drops else 1

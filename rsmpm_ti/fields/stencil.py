@@ -8,8 +8,8 @@ import taichi as ti
 from rsmpm_ti.method.shape import fold_at_walls
 from rsmpm_ti.method.tensor_product import row_gradient, row_weight
 
-MOST_RUN = 63
-"""Most particles of a run: 2^n - 1. A loop over `(end - first) & MOST_RUN` of them tells LLVM that it is short; else it
+MAX_RUN = 63
+"""Most particles of a run: 2^n - 1. A loop over `(end - first) & MAX_RUN` of them tells LLVM that it is short; else it
 interleaves four copies of its vector instructions, and runs of fewer than 16 particles get none of them."""
 
 
@@ -20,17 +20,10 @@ def coordinates(sim: ti.template(), p):
 
 
 @ti.func
-def find_bases(sim: ti.template(), start, stop):
-    """Keys of the base nodes of particles [start, stop), where they are now."""
-    for p in range(start, stop):
-        sim.particles.base[p] = sim.grid.key(sim.grid.base(coordinates(sim, p), sim.shape))
-
-
-@ti.func
 def run_stop(sim: ti.template(), p, stop):
-    """End of the run that begins at particle p: of those before `stop` with the same base node, at most MOST_RUN."""
+    """End of the run that begins at particle p: of those before `stop` with the same base node, at most MAX_RUN."""
     key = sim.particles.base[p]
-    end, limit = p + 1, ti.min(stop, p + MOST_RUN)
+    end, limit = p + 1, ti.min(stop, p + MAX_RUN)
     running = end < limit
     while running:
         running = False
@@ -88,7 +81,7 @@ def scatter_mass(sim: ti.template(), base, local: ti.template()):
 
 @ti.func
 def interpolate(sim: ti.template(), w, v_i: ti.template()):
-    """sum w_ip v_i."""
+    """sum w_ip v_i, as sum over rows of w_row (sum over k of w_k v_i)."""
     v, last = ti.Vector.zero(float, sim.dim), ti.static(sim.dim - 1)
     for row, stencil in ti.static(sim.rows):
         along = ti.Vector.zero(float, sim.dim)
@@ -101,7 +94,7 @@ def interpolate(sim: ti.template(), w, v_i: ti.template()):
 
 @ti.func
 def velocity_gradient(sim: ti.template(), w, dw, v_i: ti.template()):
-    """L = sum v_i (x) grad w_ip."""
+    """L = sum v_i (x) grad w_ip, with grad w_ip = (w_k grad w_row, w_row w_k')."""
     L, last = ti.Matrix.zero(float, sim.dim, sim.dim), ti.static(sim.dim - 1)
     for row, stencil in ti.static(sim.rows):
         w_row, dw_row = row_weight(w, row), row_gradient(w, dw, row)

@@ -1,4 +1,12 @@
-"""Products of one-dimensional weights: what a particle and a node of its stencil are to each other."""
+"""Products of one-dimensional weights: what a particle and a node of its stencil are to each other.
+
+Passes take a stencil by rows along the last axis. With k the place of a node in its row, the row's nodes share factors:
+
+    w_ip = w_row w_k,    grad w_ip = (w_k grad w_row, w_row w_k'),
+
+so what a row shares is computed once: w_row by `row_weight`, grad w_row by `row_gradient`; w_k = w[k, last] and
+w_k' = dw[k, last].
+"""
 
 import numpy as np
 import taichi as ti
@@ -18,9 +26,14 @@ def rows(shape, dim: int) -> tuple[tuple[tuple[int, ...], tuple[tuple[int, tuple
     return tuple((r, tuple((o[-1], o, i) for i, o in enumerate(stencil) if o[:-1] == r)) for r in others)
 
 
+def others(axis: int, count: int) -> tuple[int, ...]:
+    """Axes 0 to count - 1 but one."""
+    return tuple(d for d in range(count) if d != axis)
+
+
 @ti.func
 def row_weight(w: ti.template(), row: ti.template()):
-    """Product of the weights along all axes but the last: what the nodes of a row share."""
+    """w_row: product of the weights along all axes but the last."""
     weight = w[row[0], 0]
     for d in ti.static(range(1, w.m - 1)):
         weight *= w[row[d], d]
@@ -29,13 +42,12 @@ def row_weight(w: ti.template(), row: ti.template()):
 
 @ti.func
 def row_gradient(w: ti.template(), dw: ti.template(), row: ti.template()):
-    """The same with the gradient's in place of the weight along one axis, for each axis but the last."""
+    """grad w_row, for each axis but the last: dw in place of w along that axis."""
     gradient = ti.Vector.zero(float, w.m - 1)
     for axis in ti.static(range(w.m - 1)):
         g = dw[row[axis], axis]
-        for d in ti.static(range(w.m - 1)):
-            if ti.static(d != axis):
-                g *= w[row[d], d]
+        for d in ti.static(others(axis, w.m - 1)):
+            g *= w[row[d], d]
         gradient[axis] = g
     return gradient
 
@@ -55,8 +67,7 @@ def tensor_gradient(w: ti.template(), dw: ti.template(), offset: ti.template(), 
     gradient = ti.Vector.zero(float, w.m)
     for axis in ti.static(range(w.m)):
         g = dw[offset[axis], axis] * inv_dx
-        for d in ti.static(range(w.m)):
-            if ti.static(d != axis):
-                g *= w[offset[d], d]
+        for d in ti.static(others(axis, w.m)):
+            g *= w[offset[d], d]
         gradient[axis] = g
     return gradient

@@ -1,24 +1,37 @@
-"""What is done to nodes alone: clear them, turn momentum into velocity, add forces, apply boundaries."""
+"""What is done to nodes alone: clear them, turn momentum into velocity, add forces, apply boundaries.
+
+v_i = (m v)_i / m_i                                   (paper eq. 7)
+v_i <- v_i + dt (f_i / m_i + b)                       (momentum equation, paper eq. 2 and 5, on the nodes)
+"""
 
 import taichi as ti
 
+from rsmpm_ti.fields.nodes import SMALL_MASS
 from rsmpm_ti.mpm.wall_nodes import extend, fold
-
-SMALL_MASS = 1e-24
-"""Nodes lighter than this share of a full cell hold nothing: what they are made of is round-off.
-
-A particle that reaches a share r of a cell into a node's support gives it r^2/2 by B-splines and GIMP, and has a
-gradient of r there: a node that was dropped at 1e-12 took 1e-6 of the speed from its velocity gradient.
-"""
-
-PUSHED_MASS = 1e-12
-"""With `usl`, nodes lighter than this share of a full cell take no force. What a force of r does to r^2/2 is 1/r, and
-`usl` takes it into the gradient, times r: a node just reached would strain its particle as much as any other.
-"""
 
 
 @ti.func
-def clear_node(sim: ti.template(), i):
+def over_nodes(sim: ti.template(), work: ti.template(), dt: ti.template(), factor: ti.template()):
+    """Do work(sim, i, dt, factor) for every node, dense or sparse."""
+    # a loop over a field always wakes the threads, one over numbers need not; but a sparse grid must be asked for its
+    # nodes
+    if ti.static(sim.nodes.sparse):
+        for i in ti.grouped(sim.nodes.mass):
+            work(sim, i, dt, factor)
+    else:
+        ti.loop_config(serialize=sim.nodes.serial)
+        for i in ti.grouped(ti.ndrange(*sim.grid.nodes)):
+            work(sim, i, dt, factor)
+
+
+@ti.func
+def full_cell(sim: ti.template()):
+    """Mass of a cell full of rock [kg]."""
+    return sim.density * sim.grid.dx**sim.dim
+
+
+@ti.func
+def clear_node(sim: ti.template(), i, dt, factor):
     sim.nodes.mass[i] = 0.0
     sim.nodes.v[i] = ti.Vector.zero(float, sim.dim)
     sim.nodes.f[i] = ti.Vector.zero(float, sim.dim)
@@ -26,15 +39,7 @@ def clear_node(sim: ti.template(), i):
 
 @ti.kernel
 def clear_nodes(sim: ti.template()):
-    # a loop over a field always wakes the threads, one over numbers need not; but a sparse grid must be asked for its
-    # nodes. So here and below.
-    if ti.static(not sim.nodes.sparse):
-        ti.loop_config(serialize=sim.nodes.serial)
-        for i in ti.grouped(ti.ndrange(*sim.grid.nodes)):
-            clear_node(sim, i)
-    else:
-        for i in ti.grouped(sim.nodes.mass):
-            clear_node(sim, i)
+    over_nodes(sim, clear_node, 0.0, 0.0)
 
 
 @ti.func
@@ -52,61 +57,52 @@ def velocity_of(sim: ti.template(), i, momentum, factor):
     """v_i = (mv)_i / m_i and boundaries, for momentum that is mapped apart from force."""
     m = sim.nodes.mass[i]
     v = ti.Vector.zero(float, sim.dim)
-    if m > SMALL_MASS * sim.density * sim.grid.dx**sim.dim:
+    if m > SMALL_MASS * full_cell(sim):
         v = hold(sim, i, 1.0 / m * momentum, factor)
     return v
+
+
+@ti.func
+def velocity_from_momentum(sim: ti.template(), i, dt, factor):
+    sim.nodes.v[i] = velocity_of(sim, i, sim.nodes.v[i], factor)
 
 
 @ti.kernel
 def momentum_to_velocity(sim: ti.template(), factor: float):
     """usf: velocity where momentum was."""
     fold(sim.nodes.momentum_columns, sim.grid.walls)
-    if ti.static(not sim.nodes.sparse):
-        ti.loop_config(serialize=sim.nodes.serial)
-        for i in ti.grouped(ti.ndrange(*sim.grid.nodes)):
-            sim.nodes.v[i] = velocity_of(sim, i, sim.nodes.v[i], factor)
-    else:
-        for i in ti.grouped(sim.nodes.mass):
-            sim.nodes.v[i] = velocity_of(sim, i, sim.nodes.v[i], factor)
+    over_nodes(sim, velocity_from_momentum, 0.0, factor)
     extend(sim.nodes.v_columns, sim.grid.walls)
 
 
 @ti.func
-def remap_node(sim: ti.template(), i, factor):
-    sim.nodes.w[i] = velocity_of(sim, i, sim.nodes.w[i], factor)
-    sim.nodes.u[i] = sim.nodes.v[i]
-    clear_node(sim, i)
+def over_mass(v, inverse):
+    """Velocity of a node whose v holds momentum."""
+    return v * inverse
 
 
 @ti.func
-def velocity_after_remap(sim: ti.template(), factor):
-    """musl: w becomes velocity, u takes the step's, and mass, v and f are cleared for what the next step maps."""
-    fold(sim.nodes.w_columns, sim.grid.walls)
-    if ti.static(not sim.nodes.sparse):
-        ti.loop_config(serialize=sim.nodes.serial)
-        for i in ti.grouped(ti.ndrange(*sim.grid.nodes)):
-            remap_node(sim, i, factor)
-    else:
-        for i in ti.grouped(sim.nodes.mass):
-            remap_node(sim, i, factor)
-    extend(sim.nodes.w_columns, sim.grid.walls)
+def as_it_is(v, inverse):
+    """Velocity of a node whose v holds it already."""
+    return v
 
 
 @ti.func
-def update_node(sim: ti.template(), i, divide: ti.template(), dt, factor):
-    """v_i <- v_i + dt (f_i/m_i + b), then boundaries, whose impulses and work go to the ledger."""
+def accelerate(sim: ti.template(), i, velocity: ti.template(), dt, factor):
+    """v_i <- v_i + dt (f_i/m_i + b), then boundaries, whose impulses and work go to the ledger.
+
+    f takes the velocity change of the step. `velocity`: one of the two above.
+    """
     nodes, ledger = sim.nodes, sim.ledger
     m = nodes.mass[i]
     v, dv = ti.Vector.zero(float, sim.dim), ti.Vector.zero(float, sim.dim)
-    if m > SMALL_MASS * sim.density * sim.grid.dx**sim.dim:
-        inverse, v_old = 1.0 / m, nodes.v[i]
-        if ti.static(divide):
-            v_old *= inverse
+    if m > SMALL_MASS * full_cell(sim):
+        inverse = 1.0 / m
+        v_old = velocity(nodes.v[i], inverse)
         v = v_old
-        if ti.static(sim.scene.order != "usl") or m > PUSHED_MASS * sim.density * sim.grid.dx**sim.dim:
+        if m > nodes.pushed_mass * full_cell(sim):
             v += dt * inverse * nodes.f[i]
-        if ti.static(sim.heavy):
-            v += dt * ti.Vector(sim.acceleration)
+        v += dt * ti.Vector(sim.acceleration)
         for b, boundary in ti.static(enumerate(sim.boundaries)):
             if boundary.holds(sim.grid.position(i), sim.grid.dx):
                 held = boundary.project(v, factor)
@@ -119,30 +115,46 @@ def update_node(sim: ti.template(), i, divide: ti.template(), dt, factor):
         dv = v - v_old
     nodes.v[i] = v
     nodes.f[i] = dv
-    if ti.static(nodes.remap):
-        nodes.w[i] = ti.Vector.zero(float, sim.dim)
 
 
 @ti.func
-def new_velocity(sim: ti.template(), divide: ti.template(), dt, factor):
-    """`divide`: v still holds momentum. Afterwards f holds the velocity change of the step."""
-    nodes = sim.nodes
+def update_node(sim: ti.template(), i, dt, factor):
+    accelerate(sim, i, over_mass, dt, factor)
+
+
+@ti.func
+def update_node_and_clear(sim: ti.template(), i, dt, factor):
+    """And clear v_remapped for the momentum that comes back from the particles."""
+    update_node(sim, i, dt, factor)
+    sim.nodes.v_remapped[i] = ti.Vector.zero(float, sim.dim)
+
+
+@ti.func
+def update_moving_node(sim: ti.template(), i, dt, factor):
+    accelerate(sim, i, as_it_is, dt, factor)
+
+
+@ti.func
+def new_velocity(
+    sim: ti.template(), update: ti.template(), sums: ti.template(), dt: ti.template(), factor: ti.template()
+):
+    """Velocity of all nodes at the step's end, by one of the updates above; `sums`: what lies beside f at walls."""
     for b in ti.static(range(len(sim.boundaries))):
         sim.ledger.latest[b] = 0.0
-    if ti.static(divide):
-        fold(nodes.momentum_columns, sim.grid.walls)
-    fold(nodes.f_columns, sim.grid.walls)
-    if ti.static(not nodes.sparse):
-        ti.loop_config(serialize=sim.nodes.serial)
-        for i in ti.grouped(ti.ndrange(*sim.grid.nodes)):
-            update_node(sim, i, divide, dt, factor)
-    else:
-        for i in ti.grouped(nodes.mass):
-            update_node(sim, i, divide, dt, factor)
-    extend(nodes.v_columns, sim.grid.walls)
-    extend(nodes.f_columns, sim.grid.walls)
+    fold(sums, sim.grid.walls)
+    fold(sim.nodes.f_columns, sim.grid.walls)
+    over_nodes(sim, update, dt, factor)
+    extend(sim.nodes.v_columns, sim.grid.walls)
+    extend(sim.nodes.f_columns, sim.grid.walls)
 
 
 @ti.kernel
-def update_nodes(sim: ti.template(), divide: ti.template(), dt: float, factor: float):
-    new_velocity(sim, divide, dt, factor)
+def update_nodes(sim: ti.template(), dt: float, factor: float):
+    """Momentum and force become velocity and its change."""
+    new_velocity(sim, update_node, sim.nodes.momentum_columns, dt, factor)
+
+
+@ti.kernel
+def update_moving_nodes(sim: ti.template(), dt: float, factor: float):
+    """usf: force becomes velocity change; velocity is there."""
+    new_velocity(sim, update_moving_node, (), dt, factor)

@@ -1,35 +1,20 @@
 """Time stepping: musl, usf and usl as lists of passes, and the clock that counts them."""
 
-from dataclasses import dataclass
-
-import taichi as ti
-
 from rsmpm_ti.fields.state import Simulation
-from rsmpm_ti.mpm.nodes import clear_nodes, momentum_to_velocity, update_nodes
-from rsmpm_ti.mpm.passes import g2p, musl_step, p2g
+from rsmpm_ti.mpm.nodes import clear_nodes, momentum_to_velocity, update_moving_nodes, update_nodes
+from rsmpm_ti.mpm.passes import Pass, g2p, musl_step, p2g
 
-
-@ti.data_oriented
-@dataclass(frozen=True, kw_only=True)
-class Pass:
-    """What one pass over the particles does: nodes to particles, then back to nodes."""
-
-    velocity: bool = False
-    position: bool = False
-    stress: bool = False
-    momentum: bool = False
-    force: bool = False
-
-
+LOAD = Pass(momentum=True, force=True)
 MOVE = Pass(position=True, stress=True)
 MOVE_AND_LOAD = Pass(position=True, stress=True, momentum=True, force=True)
+MOMENTUM = Pass(momentum=True)
 STRESS_AND_FORCE = Pass(stress=True, force=True)
 VELOCITY_AND_MOVE = Pass(velocity=True, position=True)
 EVERYTHING = Pass(velocity=True, position=True, stress=True)
 
 
-def scatter_all(sim: Simulation, momentum: bool, force: bool, time: float) -> None:
-    p2g(sim, momentum, force, time, sim.traversal.ticket())
+def scatter_all(sim: Simulation, what: Pass, time: float) -> None:
+    p2g(sim, what, time, sim.traversal.ticket())
 
 
 def gather_all(sim: Simulation, what: Pass, dt: float, time: float) -> None:
@@ -42,7 +27,7 @@ def musl(sim: Simulation, dt: float, start: float, factors: list[float]) -> None
     The pass that ends a step begins the next: particles go to the nodes while they are at hand.
     """
     clear_nodes(sim)
-    scatter_all(sim, momentum=True, force=True, time=start)
+    scatter_all(sim, LOAD, start)
     for step, factor in enumerate(factors, 1):
         # after the last step it is for nothing, and cheaper than compiling a pass that does not; but with averaging,
         # where every other step may be the last, that is what is compiled
@@ -55,10 +40,10 @@ def usf(sim: Simulation, dt: float, start: float, factors: list[float]) -> None:
     for step, factor in enumerate(factors, 1):
         time = start + step * dt
         clear_nodes(sim)
-        scatter_all(sim, momentum=True, force=False, time=time - dt)
+        scatter_all(sim, MOMENTUM, time - dt)
         momentum_to_velocity(sim, factor)
         gather_all(sim, STRESS_AND_FORCE, dt, time)
-        update_nodes(sim, False, dt, factor)
+        update_moving_nodes(sim, dt, factor)
         gather_all(sim, VELOCITY_AND_MOVE, dt, time)
 
 
@@ -66,8 +51,8 @@ def usl(sim: Simulation, dt: float, start: float, factors: list[float]) -> None:
     """Stress last, from the updated node velocities; dissipates.  Sulsky, Chen & Schreyer (1994)."""
     for step, factor in enumerate(factors, 1):
         clear_nodes(sim)
-        scatter_all(sim, momentum=True, force=True, time=start + (step - 1) * dt)
-        update_nodes(sim, True, dt, factor)
+        scatter_all(sim, LOAD, start + (step - 1) * dt)
+        update_nodes(sim, dt, factor)
         gather_all(sim, EVERYTHING, dt, start + step * dt)
 
 

@@ -17,6 +17,8 @@ from rsmpm_ti.run.run import simulate
 from rsmpm_ti.spec.regions import Box, Disc
 from rsmpm_ti.spec.scene import Body, Domain, Loading, Scene, Schedule
 
+pytestmark = pytest.mark.usefixtures("every_traversal")
+
 STONE = Rock(density=2600.0, elasticity=Hooke(E=17e9, nu=0.14), criterion=Unbreakable())
 
 
@@ -73,9 +75,10 @@ class Swing:
         return ti.Vector([self.g * ti.cos(self.w * t), self.k * X[0]])
 
 
-def test_force_field_depends_on_time_and_place_and_its_work_is_booked():
+@pytest.mark.parametrize("order", ["musl", "usf"])
+def test_force_field_depends_on_time_and_place_and_its_work_is_booked(order):
     swing = Swing(g=1e5, w=2.0 * math.pi / 8e-5, k=1e6)
-    scene = block(loading=Loading(force_field=swing), schedule=Schedule(t_end=4e-5, cfl=0.4, rows=4))
+    scene = block(loading=Loading(force_field=swing), schedule=Schedule(t_end=4e-5, cfl=0.4, rows=4), order=order)
     result = simulate(scene)
     # v_n = dt sum b(t_k), k = 0 .. n-1, for the whole body; along y the mean place is x = 15 mm
     times = scene.dt * np.arange(scene.steps)

@@ -1,4 +1,4 @@
-"""Whole time steps against a plain NumPy loop over particles and nodes, and what transfers must keep exactly."""
+"""Whole time steps against plain NumPy over particles and nodes, and what transfers must keep exactly."""
 
 import itertools
 from types import SimpleNamespace
@@ -7,15 +7,15 @@ import numpy as np
 import pytest
 import taichi as ti
 from harness import epsilon, name_of, variants
-from plain_mpm import Reference
 
 from rsmpm_ti.fields.cell_order import sort_particles
-from rsmpm_ti.fields.parallel import REACH, Slabs
+from rsmpm_ti.fields.parallel import REACH, Chunks, Single, Slabs, traversal
 from rsmpm_ti.fields.state import Simulation
 from rsmpm_ti.method.shape import Gimp, Linear, QuadraticBSpline
 from rsmpm_ti.method.transfer import Apic, PicFlip
 from rsmpm_ti.mpm.nodes import clear_nodes
-from rsmpm_ti.mpm.stepper import ORDERS, scatter_all
+from rsmpm_ti.mpm.plain import PlainStep
+from rsmpm_ti.mpm.stepper import LOAD, ORDERS, scatter_all
 from rsmpm_ti.mpm.wall_nodes import fold
 from rsmpm_ti.rock.criteria import Unbreakable
 from rsmpm_ti.rock.elasticity import Hooke
@@ -36,7 +36,7 @@ every_shape = pytest.mark.parametrize("shape", variants(Scene, "shape"), ids=nam
 every_transfer = pytest.mark.parametrize("transfer", variants(Scene, "transfer"), ids=name_of)
 
 
-def make_scene(shape, transfer, *, order="musl", cells=CELLS, boundaries=(), viscosity=None) -> Scene:
+def make_scene(shape, transfer, *, order="musl", cells=CELLS, boundaries=(), viscosity=None, body_force=None) -> Scene:
     dim = len(cells)
     upper = tuple(c * DX for c in cells)
     return Scene(
@@ -49,7 +49,7 @@ def make_scene(shape, transfer, *, order="musl", cells=CELLS, boundaries=(), vis
             criterion=Unbreakable(),
             viscosity=viscosity or NoViscosity(),
         ),
-        loading=Loading(boundaries=boundaries),
+        loading=Loading(boundaries=boundaries, body_force=body_force),
         schedule=Schedule(t_end=1e-6, cfl=0.3),
         shape=shape,
         transfer=transfer,
@@ -58,7 +58,7 @@ def make_scene(shape, transfer, *, order="musl", cells=CELLS, boundaries=(), vis
 
 
 @pytest.fixture(scope="module")
-def simulations(taichi_f64):
+def simulations(every_traversal):
     """Scene -> Simulation: kernels compile once for each, so tests share them."""
     return {}
 
@@ -90,14 +90,29 @@ def put(sim: Simulation, state: SimpleNamespace) -> None:
     sort_particles(sim)
 
 
-def simulation(scene: Scene, real=ti.f64) -> Simulation:
-    return Simulation(scene, [Seeds(np.zeros((COUNT, scene.dim)), np.zeros(COUNT))], real)
+def simulation(scene: Scene, real=ti.f64, gpu=False) -> Simulation:
+    """gpu: with the GPU's traversal, on the CPU."""
+    return Simulation(scene, [Seeds(np.zeros((COUNT, scene.dim)), np.zeros(COUNT))], real, gpu)
 
 
 def shared(simulations: dict, scene: Scene) -> Simulation:
     if scene not in simulations:
         simulations[scene] = simulation(scene)
     return simulations[scene]
+
+
+def test_each_traversal_is_taken(simulations, every_traversal):
+    sim = shared(simulations, free_scene(Linear(), PicFlip(flip=0.3)))
+    assert type(sim.traversal).__name__ == every_traversal
+
+
+@pytest.mark.parametrize(
+    ("threads", "gpu", "deterministic", "expected"),
+    [(1, False, False, Single), (2, False, False, Slabs), (1, False, True, Slabs), (2, True, False, Chunks)],
+)
+def test_device_and_threads_choose_the_traversal(restart_taichi, threads, gpu, deterministic, expected):
+    restart_taichi(ti.f64, threads)
+    assert type(traversal(100, gpu, deterministic)) is expected
 
 
 def by_id(sim: Simulation, name: str) -> np.ndarray:
@@ -119,22 +134,22 @@ def fold_sums(sim: ti.template()):
 
 def compare_step(scene: Scene, sim: Simulation) -> None:
     state = cloud(scene, sim)
-    reference, dt, eps = Reference(sim, state), scene.dt, epsilon(sim.real)
+    plain, dt, eps = PlainStep(scene, state), scene.dt, epsilon(sim.real)
     clear_nodes(sim)
-    scatter_all(sim, True, True, 0.0)
+    scatter_all(sim, LOAD, 0.0)
     fold_sums(sim)
     size = -1, scene.dim
-    close(sim.nodes.mass.to_numpy().ravel(), reference.mass, eps, 100)
-    close(sim.nodes.v.to_numpy().reshape(size), reference.momentum(), eps, 100)
-    close(sim.nodes.f.to_numpy().reshape(size), reference.force(), eps, 100)
+    close(sim.nodes.mass.to_numpy().ravel(), plain.mass, eps, 100)
+    close(sim.nodes.v.to_numpy().reshape(size), plain.momentum(), eps, 100)
+    close(sim.nodes.f.to_numpy().reshape(size), plain.internal_force(), eps, 100)
     ORDERS[scene.order](sim, dt, 0.0, [1.0])
-    reference.step(scene.order, dt)
+    plain.step(dt)
     for name in ("u", "v", "sigma", "J", *("C",) * sim.particles.affine, *("q",) * sim.particles.viscous):
         close(by_id(sim, name), getattr(state, name), eps)
 
 
-def free_scene(shape, transfer, order="musl") -> Scene:
-    return make_scene(shape, transfer, order=order, viscosity=BulkViscosity())
+def free_scene(shape, transfer, order="musl", body_force=None) -> Scene:
+    return make_scene(shape, transfer, order=order, viscosity=BulkViscosity(), body_force=body_force)
 
 
 def walled_scene(shape) -> Scene:
@@ -149,7 +164,13 @@ def test_musl_step_is_that_of_a_plain_loop(simulations, shape, transfer):
     compare_step(scene, shared(simulations, scene))
 
 
-OTHER_ORDERS = [free_scene(QuadraticBSpline(), Apic(), "usf"), free_scene(Gimp(), PicFlip(flip=0.3), "usl")]
+WEIGHT = (3e8, -1e9)
+"""A body force [m/s^2] that changes velocities of 1 m/s by as much in a step."""
+
+OTHER_ORDERS = [
+    free_scene(QuadraticBSpline(), Apic(), "usf", WEIGHT),
+    free_scene(Gimp(), PicFlip(flip=0.3), "usl", WEIGHT),
+]
 
 
 @pytest.mark.parametrize("scene", OTHER_ORDERS, ids=lambda scene: scene.order)
@@ -162,7 +183,7 @@ def test_every_order_is_compared():
 
 
 def test_step_in_3d_is_that_of_a_plain_loop(simulations):
-    scene = make_scene(Linear(), Apic(), cells=(5, 4, 3), viscosity=BulkViscosity())
+    scene = make_scene(Linear(), Apic(), cells=(5, 4, 3), viscosity=BulkViscosity(), body_force=(*WEIGHT, 2e8))
     compare_step(scene, shared(simulations, scene))
 
 
@@ -170,16 +191,17 @@ FREE = [free_scene(shape, PicFlip(flip=0.3)) for shape in variants(Scene, "shape
 
 
 @pytest.mark.parametrize("scene", FREE, ids=lambda scene: f"{scene.order}-{name_of(scene.shape)}")
-def test_momentum_of_a_free_body_is_conserved_to_round_off(simulations, scene):
+def test_momentum_of_a_free_body_changes_by_its_weight_alone_to_round_off(simulations, scene):
     sim = shared(simulations, scene)
     state = cloud(scene, sim)
     mass = sim.density * state.volume[:, None]
     start = np.sum(mass * state.v, axis=0)
     if scene.transfer.affine:  # sum w_ip (x_i - x_p) = 0: the affine part carries none
-        start = Reference(sim, state).momentum().sum(axis=0)
+        start = PlainStep(scene, state).momentum().sum(axis=0)
     ORDERS[scene.order](sim, scene.dt, 0.0, [1.0] * 5)
     v = by_id(sim, "v")
-    assert np.abs(np.sum(mass * v, axis=0) - start).max() < 1e-12 * np.sum(mass * np.abs(v))
+    end = start + 5 * scene.dt * mass.sum() * np.array(scene.loading.body_force or (0.0, 0.0))
+    assert np.abs(np.sum(mass * v, axis=0) - end).max() < 1e-12 * np.sum(mass * np.abs(v))
     assert np.abs(v - state.v).max() > 1e-2  # and something did happen
 
 
@@ -218,7 +240,7 @@ def test_strayed_particles_reach_the_same_nodes_as_after_sorting_again(simulatio
     found = []
     for _ in range(2):
         clear_nodes(sim)
-        scatter_all(sim, True, True, 0.0)
+        scatter_all(sim, LOAD, 0.0)
         found.append([f.to_numpy() for f in (sim.nodes.mass, sim.nodes.v, sim.nodes.f)])
         sort_particles(sim)
     assert found[0][0].sum() == pytest.approx(COUNT * sim.density * (0.5 * DX) ** 2, rel=1e-12)
@@ -271,13 +293,14 @@ def test_sorting_changes_no_particle_and_puts_them_into_cell_order(simulations):
         np.testing.assert_array_equal(by_id(sim, name), getattr(state, name), err_msg=name)
 
 
-def test_one_thread_and_two_give_the_same_step_in_single_precision(restart_taichi):
-    """And that of the plain loop: f32 is compared here. Two threads meet at the border of their slabs."""
+def test_step_in_single_precision_is_that_of_a_plain_loop_and_the_same_by_every_traversal(restart_taichi):
+    """Two threads meet at the border of their slabs."""
     scene, found = free_scene(Linear(), PicFlip(flip=0.3)), []
-    for threads in (1, 2):
+    for threads, gpu in ((1, False), (2, False), (2, True)):
         restart_taichi(ti.f32, threads)
-        sim = simulation(scene, ti.f32)
+        sim = simulation(scene, ti.f32, gpu)
         compare_step(scene, sim)
         found.append([by_id(sim, name) for name in ("v", "sigma", "u")])
-    for one, two in zip(*found, strict=True):
-        close(two, one, epsilon(ti.f32))
+    for one, *others in zip(*found, strict=True):
+        for other in others:
+            close(other, one, epsilon(ti.f32))

@@ -218,7 +218,8 @@ def test_particle_fails_at_its_own_strength_and_no_other(taichi_f64):
     """Stress is given, not computed: uniaxial tension and compression at 1 % below and above each particle's own."""
     from rsmpm_ti.fields.cell_order import sort_particles
     from rsmpm_ti.fields.state import Simulation
-    from rsmpm_ti.mpm.stepper import Pass, gather_all
+    from rsmpm_ti.mpm.passes import Pass
+    from rsmpm_ti.mpm.stepper import gather_all
 
     scene = pulled(VARIED)
     k, ucs = strengths_by_seed(scene), scene.rock.criterion.ucs

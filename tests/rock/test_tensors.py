@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 import taichi as ti
 from harness import epsilon, flat, matrix, on_rows, rounded, vector
-from plain_mpm import PLACES, tensor
 
+from rsmpm_ti.mpm.plain import PLACES, tensor
 from rsmpm_ti.rock.tensors import (
     PACKED_LENGTH,
     double_contraction,

@@ -1,0 +1,100 @@
+"""Nodes to particles: velocity, position and velocity gradient from the nodes, then stress and the failure check.
+
+Indices: p particle, i node, ip pair. Eq. 6 of the paper gives a particle the nodes' displacement; velocity goes the
+same way: v_pic = sum_i w_ip v_i, and its gradient is L = sum_i v_i (x) grad w_ip.
+"""
+
+import taichi as ti
+
+from rsmpm_ti.failure.stress_update import check_failure, must_check, update_stress
+from rsmpm_ti.fields.stencil import (
+    MAX_RUN,
+    coordinates,
+    gather,
+    interpolate,
+    run_stop,
+    velocity_gradient,
+    weights_and_gradients,
+)
+from rsmpm_ti.method.tensor_product import tensor_weight
+from rsmpm_ti.mpm.p2g import field_acceleration
+
+
+@ti.func
+def spread(sim: ti.template(), w, r):
+    """Diagonal of the APIC inertia D/dx^2 from the weights themselves: exact for every shape, beside walls too."""
+    D = ti.Vector.zero(float, sim.dim)
+    for k in ti.static(range(sim.shape.width)):
+        for d in ti.static(range(sim.dim)):
+            D[d] += w[k, d] * (k - r[d]) ** 2
+    # D is negative for a particle pressed beyond a wall, and only then; it vanishes on the wall itself
+    return ti.select(ti.abs(D) > 1e-6, D, 1e-6)
+
+
+@ti.func
+def velocity_to_particle(sim: ti.template(), p, w, xi, base, v_i: ti.template(), dv_i: ti.template()):
+    """New particle velocity, and affine matrix if carried, from node velocities [stencil, dim]."""
+    particles = sim.particles
+    v_pic, dv = interpolate(sim, w, v_i), interpolate(sim, w, dv_i)
+    particles.v[p] = sim.transfer.to_particle(particles.v[p], v_pic, dv)
+    if ti.static(particles.affine):
+        B, D = ti.Matrix.zero(float, sim.dim, sim.dim), spread(sim, w, xi - base)
+        for k, offset in ti.static(enumerate(sim.stencil)):
+            for d, e in ti.static(ti.ndrange(sim.dim, sim.dim)):
+                B[d, e] += tensor_weight(w, offset) * v_i[k, d] * (offset[e] - (xi[e] - base[e]))
+        for d, e in ti.static(ti.ndrange(sim.dim, sim.dim)):
+            B[d, e] *= sim.grid.inv_dx / D[e]
+        particles.C[p] = B
+
+
+@ti.func
+def body_work(sim: ti.template(), p, v_pic, dt, time):
+    """Work of the body force in a step [J]: the velocity at the middle of the step makes that of a free fall its
+    kinetic energy to round-off."""
+    b = ti.Vector(sim.acceleration) + field_acceleration(sim, p, time - dt)
+    return ti.cast(dt * (v_pic - 0.5 * dt * b).dot(b) * sim.density * sim.particles.volume[p], ti.f64)
+
+
+@ti.func
+def nodes_to_particles(sim: ti.template(), start, stop, slot, what: ti.template(), dt, time):
+    """v_p, x_p <- x_p + dt v_pic, and L = grad v, each if asked, at the weights of the step's start."""
+    particles, nodes = sim.particles, sim.nodes
+    work = ti.cast(0.0, ti.f64)
+    first = start
+    while first < stop:
+        last = run_stop(sim, first, stop)
+        base = sim.grid.base_of(particles.base[first])
+        v_i, dv_i = gather(sim, nodes.v_moving, base), gather(sim, nodes.f, base)
+        w_i = gather(sim, nodes.v_remapped, base)
+        for k in range((last - first) & MAX_RUN):
+            p = first + k
+            xi = coordinates(sim, p)
+            w, dw = weights_and_gradients(sim, xi, base)
+            if ti.static(what.stress):
+                particles.L[p] = velocity_gradient(sim, w, dw, w_i)
+            if ti.static(what.velocity):
+                velocity_to_particle(sim, p, w, xi, base, v_i, dv_i)
+            if ti.static(what.position):
+                v_pic = interpolate(sim, w, v_i)
+                # not +=, which is an atomic add on a field
+                particles.u[p] = particles.u[p] + dt * v_pic
+                work += body_work(sim, p, v_pic, dt, time)
+        first = last
+    if ti.static(what.position and sim.loaded):
+        sim.ledger.body_work[slot] = sim.ledger.body_work[slot] + work
+
+
+@ti.func
+def new_stress(sim: ti.template(), start, stop, slot, what: ti.template(), dt, time):
+    """Stress, J and the failure check of every particle, from L."""
+    viscous = ti.cast(0.0, ti.f64)
+    found = 0
+    for p in range(start, stop):
+        viscous += ti.cast(update_stress(sim, p, sim.particles.L[p], dt), ti.f64)
+        if ti.static(sim.particles.breaks):
+            found += must_check(sim, p)
+    sim.ledger.viscous[slot] = sim.ledger.viscous[slot] + viscous
+    if ti.static(sim.particles.breaks):
+        if found > 0:  # else no particle here has failed or is about to
+            for p in range(start, stop):
+                check_failure(sim, p, dt, time, slot)
