@@ -11,13 +11,13 @@ CHILD = """
 import json, sys, time
 begun = float(sys.argv[1])
 times = {"python": time.time() - begun}
-from rsmpm_ti.library import load_scene
-from rsmpm_ti.run import start_taichi
+from rsmpm_ti.backend.start import start_taichi
+from rsmpm_ti.spec.loader import load_scene
 scene = load_scene(sys.argv[2], quick=sys.argv[3] == "quick")
 seeds = scene.particles()
 times["scene"] = time.time() - begun
 real, _ = start_taichi("f64", "cpu", int(sys.argv[4]))
-from rsmpm_ti.drive import Drive
+from rsmpm_ti.solver.advance import Drive
 import taichi as ti
 times["taichi"] = time.time() - begun
 drive = Drive(scene, seeds, real)

@@ -19,12 +19,10 @@ from rsmpm_ti.rock.tensors import isotropic, unpack
 def stress_on_nodes(sim: ti.template(), p):
     """V_p (sigma_p - q + p), packed; p is the confining pressure, which acts on every surface: confinement.py."""
     particles = sim.particles
-    sigma = particles.sigma[p]
-    if ti.static(particles.viscous):
-        sigma -= isotropic(particles.q[p], sigma.n)
+    sigma = sim.rock.viscosity.added_to(sim, p, particles.sigma[p])
     if ti.static(sim.confined):
         sigma += isotropic(sim.confinement, sigma.n)
-    return particles.volume[p] * particles.J[p] * sigma
+    return particles.volume[p] * sim.rock.after_failure.carrying_ratio(sim, p) * sigma
 
 
 @ti.func

@@ -26,7 +26,7 @@ from rsmpm_ti.records.files import write_json
 from rsmpm_ti.run import checkpoint
 from rsmpm_ti.run.settings import Settings
 from rsmpm_ti.scene import main
-from rsmpm_ti.spec import scene_checks as consistency
+from rsmpm_ti.spec import scene_checks
 from rsmpm_ti.spec.loader import load_scene, machine
 from rsmpm_ti.spec.scene_json import read_scene, to_plain
 
@@ -157,7 +157,7 @@ def test_painter_that_needs_vulkan_is_refused_without_it(refused, tmp_path, monk
 
 
 def test_scene_that_this_machine_cannot_hold_is_refused(refused, tmp_path, monkeypatch):
-    monkeypatch.setattr(consistency, "physical_memory", lambda: 1_000_000)
+    monkeypatch.setattr(scene_checks, "physical_memory", lambda: 1_000_000)
     message = refused("--out", str(tmp_path / "out"))
     assert "domain.dx" in message and "GB" in message and not (tmp_path / "out").exists()
 

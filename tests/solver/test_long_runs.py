@@ -17,12 +17,9 @@ GROWTH = 0.02
 
 LOOK = """
 import os
-from rsmpm_ti import simulate
-from rsmpm_ti.boundaries import Platen
-from rsmpm_ti.laws import Hooke, MohrCoulomb, Rock
-from rsmpm_ti.regions import Box
-from rsmpm_ti.shape import Linear
-from rsmpm_ti.spec import Affine, Body, Domain, Loading, Output, Scene, Schedule
+from rsmpm_ti import (
+    Affine, Body, Box, Domain, Hooke, Linear, Loading, MohrCoulomb, Output, Platen, Rock, Scene, Schedule, simulate,
+)
 
 PAGE = os.sysconf("SC_PAGE_SIZE")
 
@@ -70,8 +67,8 @@ def test_memory_stays_flat_over_100_000_steps_and_500_frames(tmp_path):
         """
 import sys
 from dataclasses import replace
-import rsmpm_ti.run as module
-import rsmpm_ti.writer as writer
+import rsmpm_ti.run.run as module
+import rsmpm_ti.output.writer as writer
 
 writer.WAITING_BYTES = 4 * 2**20  # steps so small leave the painter behind at once: the queue is full from the start
 scene, platens, speed, strain = block(100_000, Output(frames=500, movie=True, vtu=10))
