@@ -19,6 +19,7 @@ from types import SimpleNamespace
 
 import numpy as np
 
+from rsmpm_ti.checks import KNOWN
 from rsmpm_ti.errors import SceneError
 from rsmpm_ti.fields.state import initial_velocity
 from rsmpm_ti.output.pictures import load_limits, stress_limit
@@ -27,7 +28,7 @@ from rsmpm_ti.spec.loader import load_scene
 from rsmpm_ti.spec.loading_start import AtRest
 from rsmpm_ti.spec.regions import Box
 from rsmpm_ti.spec.scene import Body, Domain, Loading, Scene, Schedule
-from rsmpm_ti.spec.scene_json import KNOWN, from_plain, to_plain
+from rsmpm_ti.spec.scene_json import from_plain, to_plain
 
 NAN, INF = math.nan, math.inf
 NUMBERS = (

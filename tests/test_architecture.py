@@ -9,7 +9,8 @@ from pathlib import Path
 
 import pytest
 
-from rsmpm_ti.spec.scene_json import KNOWN
+import rsmpm_ti.spec.scene  # noqa: F401  (fills KNOWN)
+from rsmpm_ti.checks import KNOWN
 
 ROOT = Path(__file__).resolve().parent.parent
 PACKAGE = ROOT / "rsmpm_ti"

@@ -1,14 +1,16 @@
 """What rock that has failed still carries, by the three choices of the paper (sec. 3.2)."""
 
 from dataclasses import dataclass
+from typing import Annotated
 
 import taichi as ti
 
-from rsmpm_ti.checks import LARGEST, check_kinds
-from rsmpm_ti.errors import refuse
+from rsmpm_ti.checks import NotNegative, checked
+from rsmpm_ti.units import Pressure
 
 
 @ti.data_oriented
+@checked("after_failure")
 @dataclass(frozen=True, kw_only=True)
 class CompressionOnly:
     """Choice 1 of the paper, sec. 3.2: a failed particle is a fluid without tension, p = max(K (1 - J), 0)."""
@@ -21,6 +23,7 @@ class CompressionOnly:
 
 
 @ti.data_oriented
+@checked("after_failure")
 @dataclass(frozen=True, kw_only=True)
 class Void:
     """Choice 2 of the paper, sec. 3.2: a failed particle carries nothing; only its mass stays."""
@@ -33,20 +36,15 @@ class Void:
 
 
 @ti.data_oriented
+@checked("after_failure")
 @dataclass(frozen=True, kw_only=True)
 class Clipped:
     """Choice 3 of the paper, sec. 3.2: p = clip(K (1 - J), -tension_limit, compression_limit), both limits [Pa]."""
 
-    tension_limit: float
-    compression_limit: float
+    tension_limit: Annotated[Pressure, NotNegative]
+    compression_limit: Annotated[Pressure, NotNegative]
 
     directional = False
-
-    def __post_init__(self):
-        check_kinds("after_failure", self)
-        for name in ("tension_limit", "compression_limit"):
-            if not 0.0 <= getattr(self, name) <= LARGEST:
-                raise refuse(f"after_failure.{name}", getattr(self, name), f"in [0, {LARGEST:g}] Pa")
 
     @ti.func
     def pressure(self, bulk, J):

@@ -11,12 +11,14 @@ where a, b, c are what the stresses would be if the cracks were shut.
 
 import math
 from dataclasses import dataclass
+from typing import Annotated
 
 import taichi as ti
+from annotated_types import Interval
 
-from rsmpm_ti.checks import check_kinds
-from rsmpm_ti.errors import refuse
+from rsmpm_ti.checks import ByType, checked
 from rsmpm_ti.rock.softening import Brittle, ExponentialSoftening, LinearSoftening
+from rsmpm_ti.units import Angle
 
 FRESH = 1e-12
 """Crack strain that marks a direction as cracked: with it a brittle law has no strength left, others have all."""
@@ -30,6 +32,7 @@ SWEEPS = 4
 
 
 @ti.data_oriented
+@checked("after_failure")
 @dataclass(frozen=True, kw_only=True)
 class Directional:
     """Release across the crack only; residual friction in shear; the stress along the crack stays.
@@ -42,16 +45,11 @@ class Directional:
     otherwise it is fixed in the rock and turns only with it.
     """
 
-    residual_friction_angle: float = 30.0
+    residual_friction_angle: Annotated[Angle, Interval(ge=0.0, le=89.0)] = 30.0
     rotating: bool = False
-    softening: Brittle | LinearSoftening | ExponentialSoftening = Brittle()
+    softening: Annotated[Brittle | LinearSoftening | ExponentialSoftening, ByType] = Brittle()
 
     directional = True
-
-    def __post_init__(self):
-        check_kinds("after_failure", self)
-        if not 0.0 <= self.residual_friction_angle <= 89.0:
-            raise refuse("after_failure.residual_friction_angle", self.residual_friction_angle, "in [0, 89] degrees")
 
     @property
     def tan_residual(self) -> float:

@@ -31,11 +31,12 @@ from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
 from rsmpm_ti.analysis import summary
+from rsmpm_ti.checks import KNOWN
 from rsmpm_ti.errors import SceneError, shown
 from rsmpm_ti.scene import main
 from rsmpm_ti.spec.loader import available, keywords_of, load_scene
 from rsmpm_ti.spec.loading_start import AtRest
-from rsmpm_ti.spec.scene_json import KNOWN, read_scene, to_plain
+from rsmpm_ti.spec.scene_json import read_scene, to_plain
 
 SMALL = {"dx": 2e-3, "flaw_width": 6e-3}
 KEYWORDS = tuple(keywords_of(available()["cube"]))

@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 from small_scene import SHIPPED, make, platens, refusal
 
+from rsmpm_ti.checks import KNOWN
 from rsmpm_ti.method.shape import Gimp
 from rsmpm_ti.method.transfer import Apic
 from rsmpm_ti.rock.criteria import MohrCoulomb
@@ -16,7 +17,7 @@ from rsmpm_ti.spec.boundaries import Fixed
 from rsmpm_ti.spec.loader import load_scene
 from rsmpm_ti.spec.loading_start import AtRest
 from rsmpm_ti.spec.scene import Scene
-from rsmpm_ti.spec.scene_json import KNOWN, from_plain, read_scene, to_plain
+from rsmpm_ti.spec.scene_json import from_plain, read_scene, to_plain
 
 
 def through_json(scene: Scene) -> Scene:
@@ -73,7 +74,7 @@ def test_unknown_missing_and_wrong_fields_are_refused_by_place():
 @pytest.mark.parametrize(
     "place, value, words",
     [
-        ("order", 3, "a text"),
+        ("order", 3, "'musl', 'usf' or 'usl'"),
         ("title", None, "a text"),
         ("shape", {"type": "Apic"}, "Linear, Gimp or QuadraticBSpline"),
         ("domain.dx", True, "a number"),
@@ -81,7 +82,7 @@ def test_unknown_missing_and_wrong_fields_are_refused_by_place():
         ("domain.dx", 10**400, "a number"),
         ("domain.lower", [0.0, "0"], "numbers"),
         ("schedule.rows", 10.0, "an integer"),
-        ("schedule.dt", [1e-8], "a number or none"),
+        ("schedule.dt", [1e-8], "a number in [1e-30, 1e+18] s, positive or none"),
         ("output.movie", 1, "true or false"),
         ("output.margin", 0, "true or false"),
         ("bodies.0.region", {"type": "Linear"}, "Box, Disc"),
