@@ -136,11 +136,15 @@ def refusal(owner: str, kind: type, values, error: ValidationError) -> SceneErro
             place, value = f"{place}[{step}]", value[step]  # of numbers the whole tuple is shown: `field` stays
         if isinstance(value, dict):
             kind = KNOWN.get(str(value.get("type")), kind)
-    *path, last = first["loc"] or [None]
-    alike = [p["loc"][-1] for p in problems if p["type"] == first["type"] and list(p["loc"][:-1]) == path]
+    last = first["loc"][-1] if first["loc"] else None
+    alike = [
+        str(p["loc"][-1])
+        for p in problems
+        if p["type"] == first["type"] and p["loc"][:-1] == first["loc"][:-1] != p["loc"]
+    ]
     if first["type"] == UNKNOWN:
         names = sorted(annotations(kind))
-        return SceneError(f"{place}: {kind.__name__} has no field {shown(sorted(map(str, alike)))}; it has {names}")
+        return SceneError(f"{place}: {kind.__name__} has no field {shown(sorted(alike))}; it has {names}")
     if first["type"] == MISSING and isinstance(last, str):
         return SceneError(f"{place.removesuffix(f'.{last}')}: {kind.__name__} needs {', '.join(alike)}")
     if first["type"] != BY_HAND:
@@ -189,29 +193,32 @@ def phrase(wanted) -> str:
         return f"{', '.join(most)} or {last}" if most else last
     if typing.get_origin(bare) is tuple:
         return _phrase_of_tuple(typing.get_args(bare), marks)
-    return (WORDS.get(bare) or bare.__name__) + _range(marks)
+    bounds = next((mark for mark in marks if isinstance(mark, Interval)), None)
+    tiny = bounds and 0.0 <= (bounds.gt if bounds.ge is None else bounds.ge or -1.0) < 1e-6
+    word = WORDS.get(bare) or bare.__name__
+    return (word.replace("a ", "a positive ") if tiny else word) + _range(marks)
 
 
 def _phrase_of_tuple(kinds: tuple, marks: tuple) -> str:
-    counts = [f"{mark.min_length} to {mark.max_length}" for mark in marks if isinstance(mark, Len)]
+    count = next((_count(mark) for mark in marks if isinstance(mark, Len)), "")
     if float not in members(kinds[0]):
-        return f"a list of {phrase(kinds[0])}" + "".join(f", {count} of them" for count in counts)
-    count = "".join(counts) if kinds[-1] is Ellipsis else str(len(kinds))
-    inner = getattr(kinds[0], "__metadata__", ())
-    return f"{count} numbers separated by commas{_range(inner)}".strip()
+        return f"a list of {phrase(kinds[0])}" + (f", {count} of them" if count else "")
+    count = count if kinds[-1] is Ellipsis else str(len(kinds))
+    return f"{count} numbers separated by commas{_range(getattr(kinds[0], '__metadata__', ()))}".strip()
+
+
+def _count(length: Len) -> str:
+    low, high = length.min_length, length.max_length
+    return f"at most {high}" if low == 0 else f"{low} {'or' if high == low + 1 else 'to'} {high}"
 
 
 def _range(marks: tuple) -> str:
     """' in (0, 1] Pa', from what stands beside a type."""
-    bounds = next((mark for mark in marks if isinstance(mark, Interval)), None)
     unit = next((f" {mark.name}" for mark in marks if isinstance(mark, Unit)), "")
-    if bounds is None:
-        return unit and f" in{unit}"
-    positive = bounds.gt == 0.0 or (bounds.ge is not None and bounds.ge > 0.0)
-    return f" in {_interval(bounds)}{unit}{', positive' if positive else ''}"
-
-
-def _interval(bounds: Interval) -> str:
-    left, low = ("[", bounds.ge) if bounds.gt is None else ("(", bounds.gt)
-    right, high = ("]", bounds.le) if bounds.lt is None else (")", bounds.lt)
-    return f"{left}{low:.15g}, {high:.15g}{right}"
+    for bounds in marks:
+        if isinstance(bounds, Interval):
+            left, low = ("[", bounds.ge) if bounds.gt is None else ("(", bounds.gt)
+            right, high = ("]", bounds.le) if bounds.lt is None else (")", bounds.lt)
+            low, high = (f"{b:g}" if isinstance(b, float) else b for b in (low, high))
+            return f" in {left}{low}, {high}{right}{unit}"
+    return unit and f" in{unit}"
