@@ -26,7 +26,7 @@ Finite = Interval(ge=-LARGEST, le=LARGEST)
 Seed = typing.Annotated[int, Interval(ge=0, le=2**63 - 1)]
 """A random seed that every record can hold."""
 
-STRICT = ConfigDict(strict=True, extra="forbid", allow_inf_nan=False, arbitrary_types_allowed=True)
+STRICT = ConfigDict(strict=True, extra="forbid", allow_inf_nan=False)
 """No text is a number, no unknown keyword passes; an integer will do for a number, a bool will not."""
 
 KNOWN: dict[str, type] = {}
@@ -84,8 +84,7 @@ def _schema_with_type(kind: type, source, handler):
 
     schema = handler.resolve_ref_schema(handler(source))
     schema["strict"] = False  # of a dataclass: its fields stay strict, but a dict may stand for it
-    plain = core_schema.wrap_serializer_function_ser_schema(lambda v, inner: {"type": kind.__name__, **inner(v)})
-    return core_schema.no_info_before_validator_function(fields_of, schema, ref=schema.pop("ref"), serialization=plain)
+    return core_schema.no_info_before_validator_function(fields_of, schema, ref=schema.pop("ref"))
 
 
 def _json_schema_with_type(kind: type, schema, handler) -> dict:
@@ -93,6 +92,9 @@ def _json_schema_with_type(kind: type, schema, handler) -> dict:
     inner = handler.resolve_ref_schema(described)
     inner["properties"] = {"type": {"const": kind.__name__}, **inner.get("properties", {})}
     inner["required"] = ["type", *inner.get("required", [])]
+    for name, field in inner["properties"].items():
+        if dataclasses.is_dataclass(getattr(kind, name, None)):  # a default, which pydantic writes without its class
+            field["default"]["type"] = type(getattr(kind, name)).__name__
     return described
 
 
@@ -195,7 +197,7 @@ def phrase(wanted) -> str:
         return _phrase_of_tuple(typing.get_args(bare), marks)
     bounds = next((mark for mark in marks if isinstance(mark, Interval)), None)
     tiny = bounds and 0.0 <= (bounds.gt if bounds.ge is None else bounds.ge or -1.0) < 1e-6
-    word = WORDS.get(bare) or bare.__name__
+    word = WORDS.get(bare) or getattr(bare, "__name__", shown(bare))
     return (word.replace("a ", "a positive ") if tiny else word) + _range(marks)
 
 

@@ -25,6 +25,9 @@ class Unit:
 
     name: str
 
+    def __get_pydantic_json_schema__(self, schema, handler) -> dict:
+        return handler(schema) | {"description": f"[{self.name}]"}
+
 
 Length = Annotated[float, Unit("m")]
 LengthOrArea = Annotated[float, Unit("m or m^2")]

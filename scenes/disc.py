@@ -3,6 +3,7 @@
 import math
 
 from rsmpm_ti import (
+    Angle,
     Body,
     Difference,
     Disc,
@@ -11,6 +12,7 @@ from rsmpm_ti import (
     GPa,
     Hooke,
     Jittered,
+    Length,
     Loading,
     MohrCoulomb,
     MPa,
@@ -29,11 +31,11 @@ QUICK = {"dx": 1.0 * mm, "flaw_width": 2.0 * mm, "time_scale": 16.0}
 
 def scene(
     *,
-    flaw_angle: float = 90.0,
-    flaw_length: float = 30.0 * mm,
-    flaw_width: float = 1.0 * mm,
-    arc: float = 90.0,  # half-angle of the loaded arc [degrees]; 90: every node in touch with the platen row
-    dx: float = 0.5 * mm,
+    flaw_angle: Angle = 90.0,
+    flaw_length: Length = 30.0 * mm,
+    flaw_width: Length = 1.0 * mm,
+    arc: Angle = 90.0,  # half-angle of the loaded arc [degrees]; 90: every node in touch with the platen row
+    dx: Length = 0.5 * mm,
     strain_end: float = 1.1e-4,
     time_scale: float = 8.0,
 ) -> Scene:

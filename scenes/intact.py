@@ -8,6 +8,7 @@ from rsmpm_ti import (
     GPa,
     Hooke,
     Lattice,
+    Length,
     Loading,
     MohrCoulomb,
     MPa,
@@ -21,7 +22,7 @@ from rsmpm_ti import (
 QUICK = {"dx": 1.0 * mm}
 
 
-def scene(*, dx: float = 0.5 * mm, strain_end: float = 1.6e-3, time_scale: float | str = 10.0) -> Scene:
+def scene(*, dx: Length = 0.5 * mm, strain_end: float = 1.6e-3, time_scale: float | str = 10.0) -> Scene:
     rock = Rock(
         density=2600.0,
         elasticity=Hooke(E=17.0 * GPa, nu=0.14),

@@ -206,7 +206,7 @@ def test_modules_do_without_taichi():
 def test_importing_the_package_is_light():
     loaded = loaded_by("rsmpm_ti")["rsmpm_ti"]
     assert "rsmpm_ti" in loaded
-    assert not loaded & {"taichi", "matplotlib", "imageio"}
+    assert not loaded & {"taichi", "matplotlib", "imageio", "pydantic", "pint"}
 
 
 @each(ALL_FILES)

@@ -11,7 +11,7 @@ import typing
 from dataclasses import replace
 from pathlib import Path
 
-from pydantic import TypeAdapter, ValidationError
+from pydantic import PydanticUserError, TypeAdapter, ValidationError
 
 import rsmpm_ti
 from rsmpm_ti.checks import KNOWN, STRICT, annotations, members, phrase, remedy, unit_of
@@ -213,9 +213,11 @@ def _readings(text, wanted):
 def _parse(key: str, text, wanted):
     """A text as what an annotation says: a number, with a unit or without, a word, numbers separated by commas, or the
     name of a class."""
-    refused = f"{short(key)}={short(text) if isinstance(text, str) else shown(text)} is refused: it"
-    # in a tuple, as pydantic takes no settings beside a class that has its own
-    near, adapter = None, TypeAdapter(tuple[wanted], config=STRICT)
+    near, refused = None, f"{short(key)}={short(text) if isinstance(text, str) else shown(text)} is refused: it"
+    try:  # in a tuple, as pydantic takes no settings beside a class that has its own
+        adapter = TypeAdapter(tuple[wanted], config=STRICT)
+    except PydanticUserError:
+        raise SceneError(f"{refused} is annotated {shown(wanted)}, which no value can be held to") from None
     for value in _readings(text, wanted):
         try:
             return adapter.validate_python((value,))[0]
