@@ -82,8 +82,9 @@ def _schema_with_type(kind: type, source, handler):
             raise PydanticCustomError("other_type", "another type")
         return {key: field for key, field in value.items() if key != "type"}
 
-    schema = handler.resolve_ref_schema(handler(source))
+    schema = dict(handler.resolve_ref_schema(handler(source)))
     schema["strict"] = False  # of a dataclass: its fields stay strict, but a dict may stand for it
+    # the name under which other schemas refer to the class is given to the whole, so that they too read "type"
     return core_schema.no_info_before_validator_function(fields_of, schema, ref=schema.pop("ref"))
 
 
