@@ -29,6 +29,7 @@ from rsmpm_ti.spec.loading_start import AtRest
 from rsmpm_ti.spec.regions import Box
 from rsmpm_ti.spec.scene import Body, Domain, Loading, Scene, Schedule
 from rsmpm_ti.spec.scene_json import from_plain, to_plain
+from rsmpm_ti.units import Unit, quantity
 
 NAN, INF = math.nan, math.inf
 NUMBERS = (
@@ -235,6 +236,9 @@ def check_seeds(scene: Scene) -> None:
         assert np.abs(velocity).max() * scene.dt < scene.domain.dx
 
 
+quantity("1 mm", Unit("m"))  # pint takes half a second to load, which no refusal is blamed for
+
+
 def says(message: str, field: str) -> bool:
     """Whether a refusal names a field."""
     return field in re.findall(r"\w+", message)
@@ -256,10 +260,28 @@ def reading(text: str, value) -> bool:
     if isinstance(value, bool) or value is None:
         return text.lower() == str(value).lower()
     if isinstance(value, tuple):
-        return [float(part) for part in text.strip("()").split(",") if part.strip()] == list(value)
+        return [number_of(part) for part in text.strip("()").split(",") if part.strip()] == list(value)
     if dataclasses.is_dataclass(value):
         return text == type(value).__name__
-    return text == value if isinstance(value, str) else type(value)(text) == value
+    return text == value if isinstance(value, str) else type(value)(number_of(text)) == value
+
+
+def number_of(text: str) -> float:
+    return IN_SI[text] if text in IN_SI else float(text)
+
+
+IN_SI = {
+    "2mm": 2e-3,
+    "1cm": 0.01,
+    "15mm": 0.015,
+    "1 cm": 0.01,
+    "30 deg": 30.0,
+    "2 MPa": 2e6,
+    "1 ms": 1e-3,
+    "2.6 g/cm^3": 2600.0,
+    "20 deg/s": math.pi / 9,
+}
+"""Texts with a unit, and the number that a field of their dimension holds then: angles stay in degrees."""
 
 
 LARGE = ("dx", "particles_per_axis")
@@ -269,6 +291,8 @@ TEXTS = (
     "nan", "inf", "-inf", "0", "-0.0", "5e-324", "1e-308", "1e-30", "-1", "0.5", "1", "2", "89.9999999999", "1e13",
     "1e154", "1e308", "1e999", "-1e308", "9" * 400, "9" * 5000, "0x10", "1e", "1_0", "１", "None", "true", "False",
     "none", "", "1,2", "nan,0", "1,2,3", "()", "(0,0", "1;2", "x" * 10_000, "a\nb", "\x00", "\x1b[2J", "\ud800",
+    *IN_SI, "2mm,1cm", "1e", "1 nosuch", "1 m^9^9^9^9", "5 %", "1e999 m", "1e4000 km", "9" * 400 + "m", "m",
+    "1" + "m" * 10_000,
     "__import__('os')", "lambda: 0", "../../etc", "$\\frac{", "{}", "%s", "==", "usl", "sparse", *KNOWN,
 )  # fmt: skip
 

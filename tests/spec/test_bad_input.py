@@ -22,6 +22,7 @@ from hostile import (
     clear,
     home,
     names_below,
+    number_of,
     put,
     quickly,
     reading,
@@ -134,7 +135,7 @@ def check_setting(command, name: str, text: str) -> None:
     if scene is None:
         assert named(message, name) or name not in NAMES, message
     elif name in KEYWORDS:
-        assert scene == load_scene("cube", **(SMALL | {name: float(text)}))
+        assert scene == load_scene("cube", **(SMALL | {name: number_of(text)}))
     else:
         value = at(scene, [int(step) if step.isdigit() else step for step in name.strip().split(".")])
         assert reading(text.strip(), value), f"{name} = {value!r}"

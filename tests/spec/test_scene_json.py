@@ -2,6 +2,7 @@
 
 import dataclasses
 import json
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -17,7 +18,8 @@ from rsmpm_ti.spec.boundaries import Fixed
 from rsmpm_ti.spec.loader import load_scene
 from rsmpm_ti.spec.loading_start import AtRest
 from rsmpm_ti.spec.scene import Scene
-from rsmpm_ti.spec.scene_json import from_plain, read_scene, to_plain
+from rsmpm_ti.spec.scene_json import from_plain, read_scene, schema, to_plain
+from rsmpm_ti.spec.seeding import Lattice
 
 
 def through_json(scene: Scene) -> Scene:
@@ -107,6 +109,36 @@ def test_whole_numbers_will_do_for_numbers():
     plain = to_plain(make())
     plain["loading"]["time_scale"], plain["domain"]["lower"] = 2, [-1, 0]
     assert from_plain(plain).density == 4 * 2600.0
+
+
+def test_scene_recorded_before_pydantic_still_loads():
+    path = Path(__file__).parent / "recorded_disc_lab.json"
+    assert to_plain(read_scene(path)) == json.loads(path.read_text())["scene"]
+
+
+def test_schema_describes_every_class_and_field():
+    described = json.loads(schema())["$defs"]
+    assert described.keys() == KNOWN.keys()
+    for name, kind in KNOWN.items():
+        fields = {f.name: f for f in dataclasses.fields(kind)}
+        needed = [n for n, f in fields.items() if f.default is f.default_factory is dataclasses.MISSING]
+        assert list(described[name]["properties"]) == ["type", *fields] and described[name]["required"] == [
+            "type",
+            *needed,
+        ]
+        assert described[name]["properties"]["type"] == {"const": name}
+        assert described[name]["additionalProperties"] is False
+
+
+def test_schema_holds_ranges_units_choices_and_defaults():
+    described = json.loads(schema())["$defs"]
+    hooke = described["Hooke"]["properties"]
+    assert (hooke["nu"]["exclusiveMinimum"], hooke["nu"]["exclusiveMaximum"]) == (-1.0, 0.5)
+    assert (hooke["E"]["description"], hooke["E"]["minimum"]) == ("[Pa]", 1e-12)
+    assert described["Scene"]["properties"]["order"]["enum"] == ["musl", "usf", "usl"]
+    regions = {"#/$defs/" + name for name in ("Box", "Disc", "Slit", "Union", "Difference")}
+    assert {one["$ref"] for one in described["Body"]["properties"]["region"]["oneOf"]} == regions
+    assert described["Body"]["properties"]["seeding"]["default"] == to_plain(Lattice())
 
 
 def test_only_dataclasses_of_scenes_can_be_named():
