@@ -9,6 +9,7 @@ import dataclasses
 import functools
 import types
 import typing
+from collections.abc import Callable
 
 from annotated_types import Interval, Len
 from pydantic import ConfigDict, TypeAdapter, ValidationError
@@ -35,6 +36,8 @@ KNOWN: dict[str, type] = {}
 OWN = ("rsmpm_ti.rock.", "rsmpm_ti.method.", "rsmpm_ti.spec.")
 """Rooms of scene data: their classes stand in for no others."""
 
+Kind = typing.TypeVar("Kind")
+
 WORDS = {float: "a number", int: "an integer", bool: "true or false", str: "a text", types.NoneType: "none"}
 
 
@@ -45,11 +48,11 @@ class Remedy:
     text: str
 
 
-def checked(owner: str):
+def checked(owner: str) -> Callable[[type[Kind]], type[Kind]]:
     """Decorator of a keyword-only dataclass: its objects are checked when they are built. `owner` stands before the
     dot in refusals."""
 
-    def decorate(kind: type) -> type:
+    def decorate(kind):
         @functools.wraps(kind.__init__)
         def __init__(self, **values):
             try:
@@ -169,59 +172,47 @@ def members(wanted) -> tuple:
     return typing.get_args(wanted) if typing.get_origin(wanted) in (typing.Union, types.UnionType) else (wanted,)
 
 
-def said_about(wanted) -> tuple:
-    """What stands beside the types of an annotation, outermost first: ranges, units, remedies."""
-    if typing.get_origin(wanted) is typing.Annotated:
-        return (*reversed(wanted.__metadata__), *said_about(wanted.__origin__))
-    return tuple(mark for inner in typing.get_args(wanted) for mark in said_about(inner))
+def within(wanted):
+    """An annotation and all that it is made of: alternatives, entries, and what stands beside a type."""
+    yield wanted
+    for inner in typing.get_args(wanted):
+        yield from within(inner)
 
 
 def unit_of(wanted) -> Unit | None:
-    return next((mark for mark in said_about(wanted) if isinstance(mark, Unit)), None)
+    return next((part for part in within(wanted) if isinstance(part, Unit)), None)
 
 
 def remedy(wanted) -> str:
-    return next((mark.text for mark in said_about(wanted) if isinstance(mark, Remedy)), "")
+    return next((part.text for part in within(wanted) if isinstance(part, Remedy)), "")
 
 
 def phrase(wanted) -> str:
     """What a user is told to give: 'Lattice or Jittered', 'a number in (-1, 0.5)', '2 numbers separated by commas'."""
-    marks = wanted.__metadata__ if typing.get_origin(wanted) is typing.Annotated else ()
     if len(members(wanted)) > 1:
-        *most, last = map(phrase, members(wanted))
-        return f"{', '.join(most)} or {last}"
+        return _either(map(phrase, members(wanted)))
     (bare,) = members(wanted)
     if typing.get_origin(bare) is typing.Literal:
-        *most, last = map(repr, typing.get_args(bare))
-        return f"{', '.join(most)} or {last}" if most else last
+        return _either(map(repr, typing.get_args(bare)))
+    marks = getattr(wanted, "__metadata__", ())
+    bounds, unit, length = (next((m for m in marks if isinstance(m, kind)), None) for kind in (Interval, Unit, Len))
     if typing.get_origin(bare) is tuple:
-        return _phrase_of_tuple(typing.get_args(bare), marks)
-    bounds = next((mark for mark in marks if isinstance(mark, Interval)), None)
-    tiny = bounds and 0.0 <= (bounds.gt if bounds.ge is None else bounds.ge or -1.0) < 1e-6
+        *_, last = kinds = typing.get_args(bare)
+        count = f"{length.min_length} to {length.max_length}" if length else ""
+        if float not in members(kinds[0]):
+            return f"a list of {phrase(kinds[0])}" + (f", {count} of them" if count else "")
+        size = phrase(kinds[0]).partition("number")[2]
+        return f"{count if last is Ellipsis else len(kinds)} numbers separated by commas{size}".strip()
     word = WORDS.get(bare) or getattr(bare, "__name__", shown(bare))
-    return (word.replace("a ", "a positive ") if tiny else word) + _range(marks)
+    size = f" {unit.name}" if unit else ""
+    if bounds:
+        left, low = ("[", bounds.ge) if bounds.gt is None else ("(", bounds.gt)
+        right, high = ("]", bounds.le) if bounds.lt is None else (")", bounds.lt)
+        word = word.replace("a ", "a positive ") if 0.0 < low < 1e-6 or (left, low) == ("(", 0.0) else word
+        size = f" {left}{low:g}, {high:g}{right}{size}"
+    return f"{word} in{size}" if size else word
 
 
-def _phrase_of_tuple(kinds: tuple, marks: tuple) -> str:
-    count = next((_count(mark) for mark in marks if isinstance(mark, Len)), "")
-    if float not in members(kinds[0]):
-        return f"a list of {phrase(kinds[0])}" + (f", {count} of them" if count else "")
-    count = count if kinds[-1] is Ellipsis else str(len(kinds))
-    return f"{count} numbers separated by commas{_range(getattr(kinds[0], '__metadata__', ()))}".strip()
-
-
-def _count(length: Len) -> str:
-    low, high = length.min_length, length.max_length
-    return f"at most {high}" if low == 0 else f"{low} {'or' if high == low + 1 else 'to'} {high}"
-
-
-def _range(marks: tuple) -> str:
-    """' in (0, 1] Pa', from what stands beside a type."""
-    unit = next((f" {mark.name}" for mark in marks if isinstance(mark, Unit)), "")
-    for bounds in marks:
-        if isinstance(bounds, Interval):
-            left, low = ("[", bounds.ge) if bounds.gt is None else ("(", bounds.gt)
-            right, high = ("]", bounds.le) if bounds.lt is None else (")", bounds.lt)
-            low, high = (f"{b:g}" if isinstance(b, float) else b for b in (low, high))
-            return f" in {left}{low}, {high}{right}{unit}"
-    return unit and f" in{unit}"
+def _either(words) -> str:
+    *most, last = words
+    return f"{', '.join(most)} or {last}" if most else last

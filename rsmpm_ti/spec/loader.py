@@ -14,7 +14,7 @@ from pathlib import Path
 from pydantic import PydanticUserError, TypeAdapter, ValidationError
 
 import rsmpm_ti
-from rsmpm_ti.checks import KNOWN, STRICT, annotations, members, phrase, remedy, unit_of
+from rsmpm_ti.checks import KNOWN, STRICT, annotations, members, phrase, remedy, unit_of, within
 from rsmpm_ti.errors import SceneError, refuse, short, shown
 from rsmpm_ti.spec.scene import Scene
 from rsmpm_ti.spec.scene_json import read_scene
@@ -184,9 +184,8 @@ def _kind_of(parameter: inspect.Parameter):
 
 def family_of(kind: type):
     """The annotation of a field of scene data that names a class, with its alternatives; the class where none does."""
-    fields = (wanted for owner in KNOWN.values() for wanted in annotations(owner).values())
-    inner = (entry for wanted in fields for entry in (wanted, *typing.get_args(wanted)))
-    return next((wanted for wanted in inner if kind in members(wanted) and len(members(wanted)) > 1), kind)
+    fields = (part for owner in KNOWN.values() for wanted in annotations(owner).values() for part in within(wanted))
+    return next((part for part in fields if kind in members(part) and len(members(part)) > 1), kind)
 
 
 def _readings(text, wanted):
@@ -243,7 +242,8 @@ def _with_field(owner, kind, key: str, path: list[str], text):
     if isinstance(owner, tuple):
         if name not in map(str, range(len(owner))):
             raise SceneError(f"{short(key)}: {shown(name)} is no index; there are {len(owner)} entries, counted from 0")
-        k, entries = int(name), typing.get_args(_tuple_in(kind))
+        k = int(name)
+        entries = next(typing.get_args(part) for part in within(kind) if typing.get_origin(part) is tuple)
         entry = _with_field(owner[k], entries[0 if entries[-1] is Ellipsis else k], key, rest, text)
         return (*owner[:k], entry, *owner[k + 1 :])
     if not dataclasses.is_dataclass(owner):
@@ -260,10 +260,6 @@ def _with_field(owner, kind, key: str, path: list[str], text):
         raise SceneError(
             f"{short(key)}={short(str(text))} is refused: {type(owner).__name__} cannot be built: {error}"
         ) from None
-
-
-def _tuple_in(wanted):
-    return next(kind for kind in map(lambda k: members(k)[0], members(wanted)) if typing.get_origin(kind) is tuple)
 
 
 def scene_name(name: str) -> str:

@@ -78,7 +78,7 @@ def test_keywords_and_fields_of_a_scene_take_units():
         ("flaw_angle", "15 mm", "a number in degrees"),
         ("rock.elasticity.E", "55 m", "a positive number in [1e-12, 1e+18] Pa"),
         ("rock.elasticity.nu", "0.2 m", "a number in (-1, 0.5)"),
-        ("domain.lower", "0 s,0", "2 or 3 numbers separated by commas in [-1e+09, 1e+09] m"),
+        ("domain.lower", "0 s,0", "2 to 3 numbers separated by commas in [-1e+09, 1e+09] m"),
         ("strain_end", "1 mm", "a number"),
     ],
 )
