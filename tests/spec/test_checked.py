@@ -3,6 +3,7 @@
 import copy
 import dataclasses
 import pickle
+from types import SimpleNamespace
 from typing import Annotated, Literal
 
 import numpy as np
@@ -69,6 +70,7 @@ def test_whole_number_will_do_for_a_number_and_becomes_one():
         ({"count": 4}, "layer.count = 4 is refused: it must be an integer in [1, 3]"),
         ({"count": 1.0}, "layer.count = 1.0 is refused"),
         ({"span": (0.0,)}, "layer.span = (0.0,) is refused: it must be 2 numbers separated by commas or none"),
+        ({"span": (0.0, float("inf"))}, "layer.span = (0.0, inf) is refused"),
         ({"span": [0.0, 1.0]}, "layer.span = [0.0, 1.0] is refused"),
         ({"kind": "soft", "count": 2}, "layer: Layer cannot be built: soft layers come alone"),
         ({"colour": 1}, "layer: Layer has no field ['colour']; it has ['count', 'kind', 'rock', 'span', 'thickness']"),
@@ -126,7 +128,10 @@ def test_object_of_a_class_from_outside_will_do_where_it_has_what_is_asked():
     assert to_plain(Difference(whole=BLOCK, removed=()))["whole"] == to_plain(BLOCK)
 
 
-@pytest.mark.parametrize("stranger", [object(), Box, Unbreakable(), Hooke, "Box", 3, None, {"type": "Wedge"}, {}])
+STRANGERS = [SimpleNamespace(contains=3), Box, Unbreakable(), Hooke, "Box", 3, None, {"type": "Wedge"}, {}]
+
+
+@pytest.mark.parametrize("stranger", STRANGERS)
 def test_other_objects_will_not_do(stranger):
     assert "body.region = " in refusal(lambda: body(region=stranger))
 
