@@ -40,6 +40,11 @@ def variants(owner: type, field: str) -> list:
     return [build(kind) for kind in kinds]
 
 
+def unit(angle: float) -> np.ndarray:
+    """Unit vector at an angle from +x [rad], [2]."""
+    return np.array([np.cos(angle), np.sin(angle)])
+
+
 def name_of(value) -> str:
     """Test ids: the class of a strategy."""
     return type(value).__name__ if dataclasses.is_dataclass(value) else str(value)

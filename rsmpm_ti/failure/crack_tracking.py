@@ -1,28 +1,34 @@
-"""Cracks that grow where the mean stress is highest: judge, let the most overloaded fail, shade what lies beside."""
+"""Cracks that grow where the mean stress is highest: the most overloaded fail, and exclude what lies beside them."""
 
 import taichi as ti
 
-from rsmpm_ti.failure.nonlocal_fields import mark_hot, mean_stress, near_hot, read_openings, smooth_stress
-from rsmpm_ti.failure.smeared_crack_stress import start_crack, strengths
-from rsmpm_ti.failure.stress_update import shaded
+from rsmpm_ti.failure.nonlocal_fields import (
+    mark_overloaded,
+    mean_stress,
+    near_overloaded,
+    read_crack_strains,
+    smooth_stress,
+)
+from rsmpm_ti.failure.stress_update import start_failure
 from rsmpm_ti.fields.nonlocal_sums import MAX_NEW_CRACKS
 from rsmpm_ti.fields.stencil import coordinates
-from rsmpm_ti.rock.tensors import extreme_principals, principal_angle
+from rsmpm_ti.rock.criteria import strengths
+from rsmpm_ti.rock.tensors import extreme_principals, principal_normal
 
 
 @ti.kernel
-def judge(sim: ti.template()):
+def evaluate_overload(sim: ti.template()):
     """Overload of each intact particle by the mean stress, where it exceeds its strength; its nodes learn the most."""
     particles = sim.particles
     for p in particles.mode:
         particles.overload[p] = 0.0
-        if sim.means.any_hot[None] == 1 and particles.mode[p] == 0 and near_hot(sim, p):
+        if sim.means.any_overloaded[None] == 1 and particles.mode[p] == 0 and near_overloaded(sim, p):
             mean = mean_stress(sim, p)
             load = extreme_principals(mean)[0] / strengths(sim, p)[0]
-            angle = principal_angle(mean)
-            if load >= 1.0 and not shaded(sim, p, angle):
+            normal = principal_normal(mean)
+            if load >= 1.0 and sim.rock.averaging.own_decides(sim, p, normal) == 0:
                 particles.overload[p] = load
-                particles.crack_angle[p] = angle
+                particles.history.crack_normal[p] = normal
                 base = sim.grid.base(coordinates(sim, p), sim.shape)
                 for offset in ti.static(sim.stencil):
                     ti.atomic_max(sim.means.peak[base + ti.Vector(offset)], load)
@@ -32,7 +38,7 @@ def judge(sim: ti.template()):
 def crack_most_overloaded(sim: ti.template(), time: ti.f64):
     """Start a crack in every particle that none of its neighbours exceeds."""
     particles = sim.particles
-    ti.loop_config(serialize=sim.traversal.ordered)  # the last of several new cracks beside a particle shades it
+    ti.loop_config(serialize=sim.traversal.ordered)  # the last of several new cracks beside a particle excludes it
     for p in range(particles.count):
         load = particles.overload[p]
         if load > 0.0:
@@ -41,37 +47,36 @@ def crack_most_overloaded(sim: ti.template(), time: ti.f64):
             for offset in ti.static(sim.stencil):
                 most = ti.max(most, sim.means.peak[base + ti.Vector(offset)])
             if load >= most:
-                k = ti.atomic_add(sim.means.fresh[None], 1)
+                k = ti.atomic_add(sim.means.count[None], 1)
                 if k < MAX_NEW_CRACKS:
                     sim.means.x[k] = particles.reference[p] + particles.u[p]
-                    sim.means.angle[k] = particles.crack_angle[p]
-                    start_crack(sim, p, 1, particles.crack_angle[p], time)
-                    if ti.static(particles.viscous):
-                        particles.q[p] = 0.0
+                    sim.means.normal[k] = particles.history.crack_normal[p]
+                    lost = start_failure(sim, p, 1, particles.history.crack_normal[p], time)
+                    sim.ledger.released[0] += ti.cast(particles.volume[p] * lost, ti.f64)
 
 
 @ti.kernel
-def shade(sim: ti.template()):
+def exclude(sim: ti.template()):
     """Mark what lies beside the cracks that have just begun."""
-    particles, fresh = sim.particles, sim.means
+    particles, new_cracks = sim.particles, sim.means
     radius, slope = ti.static(sim.rock.averaging.radius, sim.rock.averaging.slope)
-    count = ti.min(fresh.fresh[None], MAX_NEW_CRACKS)
+    count = ti.min(new_cracks.count[None], MAX_NEW_CRACKS)
     for p in particles.mode:
         if particles.mode[p] == 0:
             x = particles.reference[p] + particles.u[p]
             for k in range(count):
-                d = x - fresh.x[k]
+                d = x - new_cracks.x[k]
                 if d.norm() < radius:
-                    n = ti.Vector([ti.cos(fresh.angle[k]), ti.sin(fresh.angle[k])])
+                    n = new_cracks.normal[k]
                     if ti.abs(d.dot(n)) > slope * ti.abs(d[0] * n[1] - d[1] * n[0]):
-                        particles.shade_angle[p] = fresh.angle[k]
+                        particles.excluding_normal[p] = n
 
 
 def track_cracks(sim, time: float) -> None:
     """The tensile check by the mean stress, after a step, and the openings by which cracks lose strength."""
     smooth_stress(sim)
-    read_openings(sim)
-    mark_hot(sim, sim.means.weakest)
-    judge(sim)
+    read_crack_strains(sim)
+    mark_overloaded(sim, sim.means.weakest)
+    evaluate_overload(sim)
     crack_most_overloaded(sim, time)
-    shade(sim)
+    exclude(sim)

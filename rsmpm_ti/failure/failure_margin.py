@@ -12,38 +12,29 @@ import numpy as np
 import taichi as ti
 
 from rsmpm_ti.failure.nonlocal_fields import mean_stress, smooth_stress
-from rsmpm_ti.failure.smeared_crack_stress import load_factors, strength_left, strengths
-from rsmpm_ti.failure.stress_update import own_shear_load, shaded
-from rsmpm_ti.rock.tensors import extreme_principals, principal_angle
+from rsmpm_ti.failure.stress_update import own_shear_load
+from rsmpm_ti.rock.criteria import load_factors, strengths
+from rsmpm_ti.rock.tensors import extreme_principals, principal_normal
 
 
 @ti.func
 def tensile_load(sim: ti.template(), p, own):
     """Load factor in tension: `own`, by the particle's own stress, or by what decides instead with averaging.
 
-    That is the mean stress, and own stress where the particle is shaded from tension in its direction.
+    That is the mean stress, and own stress where the particle is excluded from tension in its direction.
     """
     load = own
     if ti.static(sim.averaging):
-        load = ti.select(shaded(sim, p, principal_angle(sim.particles.sigma[p])), own, 0.0)
+        rule = sim.rock.averaging
+        load = ti.select(rule.own_decides(sim, p, principal_normal(sim.particles.sigma[p])) == 1, own, 0.0)
         mean = mean_stress(sim, p)
-        if not shaded(sim, p, principal_angle(mean)):
+        if rule.own_decides(sim, p, principal_normal(mean)) == 0:
             load = ti.max(load, extreme_principals(mean)[0] / strengths(sim, p)[0])
     return load
 
 
-@ti.func
-def damage_of(sim: ti.template(), p):
-    """Share of strength that a failed particle has lost, where it has lost most: 1 at once by the paper's laws."""
-    damage = 1.0
-    if ti.static(sim.particles.cracks):
-        left, full = strength_left(sim, p), strengths(sim, p)
-        damage -= ti.min(left[0], left[1]) / full[0]  # no more than the share of cohesion: slip wears all of them
-    return damage
-
-
 @ti.kernel
-def judge_margins(
+def evaluate_margins(
     sim: ti.template(),
     margin: ti.types.ndarray(dtype=ti.f64, ndim=1),
     governs: ti.types.ndarray(dtype=ti.i32, ndim=1),
@@ -59,7 +50,7 @@ def judge_margins(
             if ti.max(tension, shear) > 0.0:
                 governs[p] = ti.select(tension >= shear, 1, 2)  # tension is checked first
         else:
-            margin[p], governs[p], damage[p] = 0.0, particles.mode[p], damage_of(sim, p)
+            margin[p], governs[p], damage[p] = 0.0, particles.mode[p], sim.rock.after_failure.damage(sim, p)
 
 
 def margins(sim) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
@@ -72,5 +63,5 @@ def margins(sim) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     if sim.particles.breaks:
         if sim.averaging:
             smooth_stress(sim)
-        judge_margins(sim, margin, governs, damage)
+        evaluate_margins(sim, margin, governs, damage)
     return margin, governs, damage

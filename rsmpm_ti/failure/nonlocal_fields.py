@@ -17,7 +17,7 @@ def clear_means(sim: ti.template()):
         sim.means.sums[i] = zero
         sim.means.peak[i] = 0.0
     for _ in range(1):
-        sim.means.fresh[None], sim.means.any_hot[None] = 0, 0
+        sim.means.count[None], sim.means.any_overloaded[None] = 0, 0
 
 
 @ti.kernel
@@ -34,7 +34,8 @@ def spread_stress(sim: ti.template(), ticket: int):
                     base = sim.grid.base(xi, sim.shape)
                     w, dw = weights_at(sim, xi, base)
                     sigma, V_p = particles.sigma[p], particles.volume[p] * particles.J[p]
-                    carried = V_p * ti.Vector([sigma[0], sigma[1], sigma[2], sigma[3], 1.0, particles.widest[p][0]])
+                    strain = particles.history.crack_strain_max[p][0]
+                    carried = V_p * ti.Vector([sigma[0], sigma[1], sigma[2], sigma[3], 1.0, strain])
                     for offset in ti.static(sim.stencil):
                         i = base + ti.Vector(offset)
                         sim.traversal.add(sim.means.sums, i, tensor_weight(w, offset) * carried)
@@ -67,7 +68,7 @@ def mean_stress(sim: ti.template(), p):
 
 
 @ti.kernel
-def read_openings(sim: ti.template()):
+def read_crack_strains(sim: ti.template()):
     """Crack strain of each cracked particle if its band had the opening of the rock around: Bazant & Lin (1988).
 
     J. Struct. Eng. 114:2493. What averaging makes of a band is highest in its middle and falls off as a Gaussian; the
@@ -90,42 +91,41 @@ def read_openings(sim: ti.template()):
                 total = means.sums[base + ti.Vector(offset)]
                 slope = tensor_gradient(w, dw, offset, sim.grid.inv_dx)
                 gradient += (total[5] - strain / volume * total[4]) * slope
-            n = ti.Vector([ti.cos(particles.crack_angle[p]), ti.sin(particles.crack_angle[p])])
-            away = ti.abs(gradient.dot(n)) * means.variance / ti.max(strain, 1e-30)
+            away = ti.abs(gradient.dot(particles.history.crack_normal[p])) * means.variance / ti.max(strain, 1e-30)
             part = ti.max(0.0, ti.min(1.0, 2.0 - 2.0 * away / sim.band))
             away = ti.min(away, 0.5 * sim.band)
             middle = ti.exp(0.5 * away * away / means.variance) * strain / volume
-            particles.mean_opening[p] = part * middle / means.band_share
+            particles.crack_strain_nonlocal[p] = part * middle / means.band_share
 
 
 @ti.kernel
-def mark_hot(sim: ti.template(), limit: float):
+def mark_overloaded(sim: ti.template(), limit: float):
     """Which nodes, and whether any, have a mean sigma_1 of at least `limit` [Pa].
 
     The mean stress at a particle is a weighted mean of those at its nodes and sigma_1 is convex, so a particle without
-    a hot node cannot be overloaded: most are spared the reading.
+    an overloaded node cannot be overloaded: most are spared the reading.
     """
     for i in ti.grouped(sim.means.sums):
-        total, hot = sim.means.sums[i], 0
+        total, overloaded = sim.means.sums[i], 0
         if total[4] > 0.0:
             sigma = ti.Vector([total[0], total[1], total[2], total[3]])
             if extreme_principals(sigma)[0] >= limit * total[4]:
-                hot = 1
-                sim.means.any_hot[None] = 1
-        sim.means.hot[i] = hot
+                overloaded = 1
+                sim.means.any_overloaded[None] = 1
+        sim.means.overloaded[i] = overloaded
 
 
 @ti.func
-def near_hot(sim: ti.template(), p):
+def near_overloaded(sim: ti.template(), p):
     base = sim.grid.base(coordinates(sim, p), sim.shape)
-    hot = 0
+    near = 0
     for offset in ti.static(sim.stencil):
-        hot |= sim.means.hot[base + ti.Vector(offset)]
-    return hot == 1
+        near |= sim.means.overloaded[base + ti.Vector(offset)]
+    return near == 1
 
 
 def smooth_stress(sim) -> None:
-    """Fill sim.means.sums for `mean_stress` and `read_openings`."""
+    """Fill sim.means.sums for `mean_stress` and `read_crack_strains`."""
     clear_means(sim)
     spread_stress(sim, sim.traversal.ticket())
     blur(sim, sim.means.sums, sim.means.other, 0)

@@ -2,10 +2,8 @@
 
 import taichi as ti
 
-from rsmpm_ti.failure.smeared_crack_stress import has_failed, load_factors, release, start_crack
-from rsmpm_ti.fields.state import NO_SHADE
-from rsmpm_ti.rock.after_failure import pressure_energy
-from rsmpm_ti.rock.tensors import extreme_principals, isotropic, principal_angle
+from rsmpm_ti.rock.criteria import load_factors
+from rsmpm_ti.rock.tensors import extreme_principals, principal_normal
 
 
 @ti.func
@@ -19,8 +17,8 @@ def record_failure(sim: ti.template(), p, mode, extremes, released, time):
     events.released[e] = released
     events.mode[e] = mode
     events.id[e] = particles.id[p]
-    if ti.static(events.directional):
-        events.crack_angle[e] = particles.crack_angle[p]
+    for column, variable in ti.static(events.of_history):
+        column[e] = variable[p]
 
 
 @ti.func
@@ -33,44 +31,22 @@ def update_stress(sim: ti.template(), p, L, dt):
     J = particles.J[p] * rock.elasticity.volume_ratio(dt * L)
     particles.J[p] = J
     particles.sigma[p] = rock.elasticity.stress(particles.sigma[p], dt * L)
-    lost = 0.0
-    if ti.static(particles.viscous):
-        rate = L.trace()
-        q = rock.viscosity.pressure(rate, sim.density / J, sim.grid.dx, sim.wave_speed)
-        if ti.static(particles.breaks):
-            q = ti.select(particles.mode[p] == 0, q, 0.0)  # none in failed rock (paper sec. 3.2)
-        particles.q[p] = q
-        lost = -dt * q * rate * particles.volume[p] * J
-    return lost
-
-
-@ti.func
-def shaded(sim: ti.template(), p, angle):
-    """Whether a crack with a normal near `angle` runs beside the particle."""
-    return ti.cos(2.0 * (angle - sim.particles.shade_angle[p])) > 0.0 and sim.particles.shade_angle[p] < NO_SHADE
+    return rock.viscosity.update(sim, p, L.trace(), dt)
 
 
 @ti.func
 def own_shear_load(sim: ti.template(), load):
-    """Load factor in shear, of load factors of a particle's own stress.
-
-    With averaging, tension beyond the cut-off counts as the cut-off: what it does is for the mean stress to judge. It
-    would reach Mohr-Coulomb by itself, and rock on a flaw's face would slip where it ought to open.
-    """
-    most = load[0]
-    if ti.static(sim.averaging):
-        most = ti.min(load[0], sim.rock.criterion.tensile_strength)
-    return sim.rock.criterion.shear_load(most, load[1])
+    """Load factor in shear, of load factors of a particle's own stress."""
+    return sim.rock.criterion.shear_load(sim.rock.averaging.own_tension(sim, load[0]), load[1])
 
 
 @ti.func
 def failure_by_own_stress(sim: ti.template(), p, extremes):
-    """Mode by a particle's own stress: 0, 1 or 2. With averaging, tension is for the mean stress unless shaded."""
+    """Mode by a particle's own stress: 0, 1 or 2. Tension may be for a mean stress to judge: nonlocal_mean.py."""
     load = load_factors(sim, p, extremes)
     mode = sim.rock.criterion.mode(load[0], load[1])
-    if ti.static(sim.averaging):
-        if mode == 1 and not shaded(sim, p, principal_angle(sim.particles.sigma[p])):
-            mode = ti.select(own_shear_load(sim, load) >= 1.0, 2, 0)
+    if mode == 1 and sim.rock.averaging.own_decides(sim, p, principal_normal(sim.particles.sigma[p])) == 0:
+        mode = ti.select(own_shear_load(sim, load) >= 1.0, 2, 0)
     return mode
 
 
@@ -82,53 +58,34 @@ def must_check(sim: ti.template(), p):
 
 
 @ti.func
-def check_and_release(sim: ti.template(), p, dt, time, slot):
-    """The failure check for rock that cracks with a direction, and the stress of what has cracked.
-
-    The event is when a particle has opened or slipped by what costs half of the strength: at once without fracture
-    energy.
-    """
+def start_failure(sim: ti.template(), p, mode, normal, time):
+    """From now on a particle loses strength by tension (1) or shear (2); returns the energy lost at once [J/m^3]."""
     particles = sim.particles
-    extremes = extreme_principals(particles.sigma[p])
-    if particles.mode[p] == 0:
-        mode = failure_by_own_stress(sim, p, extremes)
-        if mode != 0:
-            start_crack(sim, p, mode, principal_angle(particles.sigma[p]), time)
-            if ti.static(particles.viscous):
-                particles.q[p] = 0.0
-    if particles.mode[p] != 0:
-        sigma, lost = release(sim, p, dt * particles.L[p], time)
-        lost *= particles.volume[p] * particles.J[p]
-        particles.sigma[p] = sigma
-        particles.lost[p] = particles.lost[p] + lost
-        sim.ledger.released[slot] += ti.cast(lost, ti.f64)
-        mode = particles.mode[p]
-        if mode != particles.failed[p] and has_failed(sim, p, mode):
-            particles.failed[p] = mode
-            record_failure(sim, p, mode, extremes, particles.lost[p], time)
+    ti.atomic_min(sim.events.onset[None], time)
+    particles.mode[p] = mode
+    sim.rock.viscosity.stop(sim, p)
+    return sim.rock.after_failure.begin(sim, p, mode, normal)
 
 
 @ti.func
-def check_failure(sim: ti.template(), p, time, slot):
-    """The failure check of the paper: tension first, then Mohr-Coulomb; irreversible.
+def check_failure(sim: ti.template(), p, dt, time, slot):
+    """The failure check of the paper, tension first, then Mohr-Coulomb; irreversible. And the stress of failed rock.
 
-    A failed particle keeps s = 0 and a pressure from total J.
+    What failed rock carries, what that costs and when it is an event is for the law after failure to say.
     """
-    particles, rock = sim.particles, sim.rock
-    bulk = ti.static(rock.elasticity.bulk)
-    sigma, mode = particles.sigma[p], particles.mode[p]
-    if mode == 0:
-        extremes = extreme_principals(sigma)
-        load = load_factors(sim, p, extremes)
-        mode = rock.criterion.mode(load[0], load[1])
+    particles, law = sim.particles, sim.rock.after_failure
+    extremes, failed, lost = extreme_principals(particles.sigma[p]), 0, 0.0
+    if particles.mode[p] == 0:
+        mode = failure_by_own_stress(sim, p, extremes)
         if mode != 0:
-            J = particles.J[p]
-            particles.mode[p] = mode
-            if ti.static(particles.viscous):
-                particles.q[p] = 0.0
-            kept = pressure_energy(rock.after_failure.pressure(bulk, J), bulk, J)
-            released = particles.volume[p] * (J * rock.elasticity.energy(sigma) - kept)
-            sim.ledger.released[slot] += ti.cast(released, ti.f64)
-            record_failure(sim, p, mode, extremes, released, time)
-    if mode != 0:
-        particles.sigma[p] = isotropic(-rock.after_failure.pressure(bulk, particles.J[p]), sigma.n)
+            lost += start_failure(sim, p, mode, principal_normal(particles.sigma[p]), time)
+    else:
+        failed = law.failed_mode(sim, p)
+    if particles.mode[p] != 0:
+        sigma, more = law.respond(sim, p, dt * particles.L[p], dt)
+        lost += more
+        particles.sigma[p] = sigma
+        sim.ledger.released[slot] += ti.cast(particles.volume[p] * lost, ti.f64)
+        mode = law.failed_mode(sim, p)
+        if mode != failed:
+            record_failure(sim, p, mode, extremes, particles.volume[p] * law.released(sim, p, lost), time)

@@ -22,7 +22,7 @@ class NonlocalSums:
         self.reach, self.taps = len(taps) // 2, ti.field(real, len(taps))
         self.taps.from_numpy(np.array(taps))
         self.sums, self.other = (ti.Vector.field(6, real, grid.nodes) for _ in range(2))
-        self.peak, self.hot, self.any_hot = (
+        self.peak, self.overloaded, self.any_overloaded = (
             ti.field(real, grid.nodes),
             ti.field(ti.i32, grid.nodes),
             ti.field(ti.i32, ()),
@@ -35,9 +35,6 @@ class NonlocalSums:
         self.weakest = scene.rock.criterion.tensile_strength
         travel = scene.wave_speed * scene.dt
         self.interval = max(1, math.floor(0.25 * scene.rock.averaging.length / travel))
-        # cracked particles whose shade has not been cast yet: place and angle of the crack's normal
-        self.fresh, self.x, self.angle = (
-            ti.field(ti.i32, ()),
-            ti.Vector.field(2, real, MAX_NEW_CRACKS),
-            ti.field(real, MAX_NEW_CRACKS),
-        )
+        # cracks that have begun at this look: how many, position and normal
+        self.count = ti.field(ti.i32, ())
+        self.x, self.normal = (ti.Vector.field(2, real, MAX_NEW_CRACKS) for _ in range(2))

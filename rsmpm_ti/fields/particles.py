@@ -1,10 +1,34 @@
 """Fields of the particles: those that a scene's physics needs, and no more."""
 
+import numpy as np
 import taichi as ti
 
 from rsmpm_ti.fields.nodes import components
+from rsmpm_ti.rock.after_failure import Variable
 from rsmpm_ti.rock.tensors import PACKED_LENGTH
 from rsmpm_ti.spec.scene import Scene
+
+
+@ti.data_oriented
+class LawHistory:
+    """What the law after failure remembers of each particle: a field for each of its variables, by its name."""
+
+    def __init__(self, variables: tuple[Variable, ...], dim: int, count: int, real):
+        self.variables = variables
+        self.real_fields, self.whole_fields = [], []
+        for variable in variables:
+            kind, fields = (ti.i32, self.whole_fields) if variable.whole else (real, self.real_fields)
+            layout = ti.Layout.SOA
+            fields.append(
+                ti.Vector.field(dim, kind, count, layout=layout) if variable.per_axis else ti.field(kind, count)
+            )
+            setattr(self, variable.name, fields[-1])
+        self.components = tuple(c for field in (*self.real_fields, *self.whole_fields) for c in components(field))
+        self.has_normal = any(variable.name == "crack_normal" for variable in variables)
+
+    def to_numpy(self) -> dict[str, np.ndarray]:
+        """The variables by name as they lie in memory, [n] or [n, dim]."""
+        return {variable.name: getattr(self, variable.name).to_numpy() for variable in self.variables}
 
 
 @ti.data_oriented
@@ -41,24 +65,21 @@ class Particles:
         if self.breaks:
             self.mode = ti.field(ti.i32, count)
             whole_fields.append(self.mode)
-        self.cracks = self.breaks and scene.rock.after_failure.directional
-        if self.cracks:
-            # angle of the crack's normal [rad]; opening strains across it and along it, and their largest; slip strain
-            self.crack_angle, self.slip = ti.field(real, count), ti.field(real, count)
-            self.opening, self.widest = vector(2), vector(2)
-            # energy lost so far [J]; `failed`: the mode by which the particle itself opened or slipped by what costs
-            # half of the strength, while `mode` starts with the loss
-            self.lost, self.failed = ti.field(real, count), ti.field(ti.i32, count)
-            real_fields += [self.crack_angle, self.slip, self.opening, self.widest, self.lost]
-            whole_fields.append(self.failed)
+        self.history = LawHistory(scene.rock.after_failure.history if self.breaks else (), dim, count, real)
+        real_fields += self.history.real_fields
+        whole_fields += self.history.whole_fields
         if self.breaks and scene.rock.averaging.acts:
-            # overload is of one step only; shade_angle: normal of the crack beside [rad]
-            self.overload, self.shade_angle = ti.field(real, count), ti.field(real, count)
+            # overload is of one step only; excluding_normal: of the crack beside which this particle lies, or 0
+            self.overload, self.excluding_normal = ti.field(real, count), vector(dim)
             # crack strain of the rock around, by which tensile strength is lost: as last averaged, and the largest
-            self.mean_opening, self.worn = ti.field(real, count), ti.field(real, count)
-            real_fields += [self.shade_angle, self.mean_opening, self.worn]
+            self.crack_strain_nonlocal, self.crack_strain_max_nonlocal = ti.field(real, count), ti.field(real, count)
+            real_fields += [self.excluding_normal, self.crack_strain_nonlocal, self.crack_strain_max_nonlocal]
+        # what is 0 in a particle at rest without stress, and what a particle that can break has besides
+        resting = [self.v, self.sigma, *([self.C] if self.affine else []), *([self.q] if self.viscous else [])]
+        self.resting_components = (*(c for field in resting for c in components(field)), *self.history.components)
+        self.modes = (self.mode,) if self.breaks else ()
         self.real_components = tuple(c for field in real_fields for c in components(field))
-        self.whole_components = tuple(whole_fields)
+        self.whole_components = tuple(c for field in whole_fields for c in components(field))
         # cell key at the last sort and now, and room for sorting
         self.key, self.base, self.order = (ti.field(ti.i32, count) for _ in range(3))
         self.scratch = ti.field(real, count)

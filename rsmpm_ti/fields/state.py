@@ -19,10 +19,6 @@ from rsmpm_ti.spec.loading_start import Affine
 from rsmpm_ti.spec.scene import Scene
 from rsmpm_ti.spec.seeding import Seeds
 
-NO_SHADE = 100.0
-"""Angle [rad] beside a crack of a particle that none runs beside."""
-
-
 FEW_NODES = 50_000
 """On a CPU, fewer nodes than these are done by one thread: 0.2 ms, as waking the others takes."""
 
@@ -53,6 +49,7 @@ class Simulation:
         self.driven = self.force_field is not None
         self.grid = Grid(scene)
         self.drops = scene.domain.outside == "drop"
+        self.outside_is_sick = 0 if self.drops else 1
         count = sum(len(body.x) for body in seeds)
         if count >= 2**31:
             raise SceneError(f"{count} particles are more than 2^31 - 1; use a larger dx or fewer particles per axis")
@@ -61,7 +58,10 @@ class Simulation:
         self.nodes = Nodes(scene, self.grid, real, use_sparse_grid(scene, count))
         few = not gpu and math.prod(n - 2 * scene.domain.room for n in self.grid.nodes) < FEW_NODES
         self.nodes.serial = self.traversal.serial or self.traversal.ordered or few
-        self.events, self.ledger = Events(scene, count, real), Ledger(scene, self.traversal.count)
+        self.events, self.ledger = (
+            Events(scene, count, real, self.particles.history),
+            Ledger(scene, self.traversal.count),
+        )
         self.averaging = scene.rock.criterion.breaks and scene.rock.averaging.acts
         if self.averaging:
             self.means = NonlocalSums(scene, self.grid, real)
@@ -79,8 +79,6 @@ class Simulation:
         order = np.argsort(np.ravel_multi_index(base.T, self.grid.nodes, mode="clip"), kind="stable")
         particles.reference.from_numpy(x[order].astype(kind))
         particles.v.from_numpy(v[order].astype(kind))
-        if self.averaging:
-            particles.shade_angle.fill(NO_SHADE)
         particles.volume.from_numpy((volume[order] / self.J_start).astype(kind))
         particles.J.fill(self.J_start)
         if self.confined:

@@ -10,7 +10,7 @@ pass.
 
 import taichi as ti
 
-from rsmpm_ti.failure.stress_update import check_and_release, check_failure, must_check, update_stress
+from rsmpm_ti.failure.stress_update import check_failure, must_check, update_stress
 from rsmpm_ti.fields.stencil import (
     MOST_RUN,
     coordinates,
@@ -241,10 +241,7 @@ def new_stress(sim: ti.template(), start, stop, slot, dt, time):
     if ti.static(sim.particles.breaks):
         if found > 0:  # else no particle here has failed or is about to
             for p in range(start, stop):
-                if ti.static(sim.particles.cracks):
-                    check_and_release(sim, p, dt, time, slot)
-                else:
-                    check_failure(sim, p, time, slot)
+                check_failure(sim, p, dt, time, slot)
 
 
 @ti.func

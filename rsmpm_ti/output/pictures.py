@@ -6,7 +6,6 @@ from pathlib import Path
 import numpy as np
 
 from rsmpm_ti.rock.criteria import MohrCoulomb
-from rsmpm_ti.rock.softening import Brittle
 from rsmpm_ti.spec.scene import Scene
 
 
@@ -42,8 +41,7 @@ def commission(scene: Scene, name: str, out: Path, volume: float) -> Commission:
 
 def softens(scene: Scene) -> bool:
     """Whether the rock of a scene loses its strength while it cracks, not at once."""
-    law = scene.rock.after_failure
-    return law.directional and not isinstance(law.softening, Brittle)
+    return scene.rock.after_failure.softens
 
 
 def stress_limit(scene: Scene, load: float | None) -> float:

@@ -1,6 +1,6 @@
 """What a run looks like from outside at one instant: plain NumPy, no Taichi."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 
@@ -58,3 +58,4 @@ class Snapshot:
     # of the normal of the crack in the particle, from +x [degrees, 0 to 180), NaN where it has none and by the paper's
     # laws; where it failed in shear, of sigma_1 then; [n]
     crack_angle: np.ndarray
+    history: dict[str, np.ndarray] = field(default_factory=dict)  # what the law after failure remembers, by name

@@ -81,6 +81,28 @@ class MohrCoulomb:
         return (0.5 * (sigma_1 - sigma_3) + 0.5 * (sigma_1 + sigma_3) * self.sin_phi) / self.c_cos_phi
 
 
+@ti.func
+def strength_factor(sim: ti.template(), p):
+    """What multiplies a particle's cohesion and tensile strength: 1 in uniform rock."""
+    k = 1.0
+    if ti.static(sim.particles.varied):
+        k = sim.particles.strength[p]
+    return k
+
+
+@ti.func
+def strengths(sim: ti.template(), p):
+    """Tensile strength and cohesion of a particle's rock before it cracked [Pa]."""
+    k = strength_factor(sim, p)
+    return ti.Vector([sim.rock.criterion.tensile_strength * k, sim.rock.criterion.cohesion * k])
+
+
+@ti.func
+def load_factors(sim: ti.template(), p, extremes):
+    """Extreme principal stresses as the criterion sees them: dividing by k is multiplying both strengths by it."""
+    return extremes / strength_factor(sim, p)
+
+
 @ti.data_oriented
 @checked("criterion")
 @dataclass(frozen=True, kw_only=True)

@@ -1,40 +1,41 @@
 """The law of cracked rock with a direction: no tension across the crack, friction on it, compression kept.
 
 Smeared crack (Rots 1988): the strain of a failed particle is elastic strain plus opening of its crack and of a second
-one at right angles, e = (e_n, e_t) >= 0, plus slip. Opening is kept for each direction, so that a crack carries
-nothing until its faces meet again. In the frame of the crack (n across it, t along it) stress follows
+one at right angles, the crack strains e = (e_n, e_t) >= 0, plus slip. Crack strain is kept for each direction, so that
+a crack carries nothing until its faces meet again. In the frame of the crack (n across it, t along it) stress follows
 
     s_nn = a - M e_n - lam e_t,    s_tt = b - lam e_n - M e_t,    s_zz = c - lam_z (e_n + e_t),
 
-where a, b, c are what the stresses would be if the cracks were shut.
+where a, b, c are what the stresses would be if the cracks were closed. The stress of a step: crack_return.py.
 """
 
 import math
 from dataclasses import dataclass
 from typing import Annotated
 
+import numpy as np
 import taichi as ti
 from annotated_types import Interval
 
 from rsmpm_ti.checks import ByType, checked
+from rsmpm_ti.errors import refuse
+from rsmpm_ti.rock.after_failure import AfterFailure, Variable
+from rsmpm_ti.rock.crack_return import (
+    MIN_CRACK_STRAIN,
+    crack_return,
+    has_failed,
+    spring_energy,
+    strength_left,
+)
+from rsmpm_ti.rock.criteria import strengths
 from rsmpm_ti.rock.softening import Brittle, ExponentialSoftening, LinearSoftening
 from rsmpm_ti.units import Angle
-
-FRESH = 1e-12
-"""Crack strain that marks a direction as cracked: with it a brittle law has no strength left, others have all."""
-
-NO_DIRECTION = 1e-5
-"""Radius of in-plane stress over tensile strength below which a rotating crack stays: round-off has no direction."""
-
-
-SWEEPS = 4
-"""Sweeps over the two openings; each leaves (lam/M)^2 of the error, 3 % for nu = 0.14 and 11 % for nu = 0.25."""
 
 
 @ti.data_oriented
 @checked("after_failure")
 @dataclass(frozen=True, kw_only=True)
-class Directional:
+class Directional(AfterFailure):
     """Release across the crack only; residual friction in shear; the stress along the crack stays.
 
     A particle that failed in tension has a crack with its normal along sigma_1 at failure: it carries no tension, or
@@ -49,7 +50,23 @@ class Directional:
     rotating: bool = False
     softening: Annotated[Brittle | LinearSoftening | ExponentialSoftening, ByType] = Brittle()
 
-    directional = True
+    history = (
+        Variable(name="crack_normal", unit="1", per_axis=True, about="unit normal of the crack; turns with the rock"),
+        Variable(
+            name="crack_strain", unit="1", per_axis=True, about="strain by opening, across the crack and along it"
+        ),
+        Variable(name="crack_strain_max", unit="1", per_axis=True, about="the largest crack strains so far"),
+        Variable(name="slip", unit="1", about="shear strain by slip, summed"),
+        Variable(name="dissipated", unit="J/m^3", about="energy lost so far, per stress-free volume"),
+        Variable(name="failed", unit="1", whole=True, about="mode by which it opened or slipped by half its strength"),
+    )
+    dimensions = (2,)
+    oriented = True
+    max_events = 2  # what failed in tension may fail in shear later
+
+    @property
+    def softens(self) -> bool:
+        return not isinstance(self.softening, Brittle)
 
     @property
     def tan_residual(self) -> float:
@@ -59,12 +76,73 @@ class Directional:
     def sin_residual(self) -> float:
         return math.sin(math.radians(self.residual_friction_angle))
 
-    @ti.func
-    def opening(self, shut, tension, largest, modulus):
-        """Crack strain of one direction from the stress `shut` that it would carry if the crack were shut.
+    def check(self, rock, shape, dx: float) -> None:
+        """Refuse a crack band that loses strength faster than the rock in it unloads: Bazant & Oh (1983), eq. 34."""
+        pairs = (
+            ("G_f_I", rock.criterion.tensile_strength, rock.elasticity.E),
+            ("G_f_II", rock.criterion.cohesion, rock.elasticity.mu),
+        )
+        width = shape.crack_band * dx
+        for name, strength, modulus in pairs:
+            energy = getattr(self.softening, name)
+            fall = self.softening.steepest(strength, energy) * width
+            if not fall < modulus:
+                remedy = f"use a dx below {modulus / fall * dx:.4g} m, or more energy"
+                allowed = f"large enough that a crack band of {1e3 * width:.4g} mm does not snap back"
+                raise refuse(f"after_failure.softening.{name}", energy, allowed, remedy)
 
-        `tension` is what is left of its strength, `largest` the largest opening so far. Up to that the crack opens
+    def aperture(self, history: dict[str, np.ndarray], band: float) -> np.ndarray:
+        return band * history["crack_strain"].max(axis=1)
+
+    @ti.func
+    def crack_strain(self, closed, tension, largest, modulus):
+        """Crack strain of one direction from the stress `closed` that it would carry if the crack were closed.
+
+        `tension` is what is left of its strength, `largest` the largest crack strain so far. Up to that the crack opens
         and closes along the secant; beyond it its stress is `tension`, of the step before: a step opens it little.
         """
-        secant = shut * largest / ti.max(modulus * largest + tension, 1e-30)
-        return ti.max(ti.min(secant, largest), (shut - tension) / modulus, 0.0)
+        secant = closed * largest / ti.max(modulus * largest + tension, 1e-30)
+        return ti.max(ti.min(secant, largest), (closed - tension) / modulus, 0.0)
+
+    @ti.func
+    def begin(self, sim: ti.template(), p, mode, normal):
+        """From now on the particle loses strength; nothing is lost yet."""
+        h = sim.particles.history
+        h.crack_normal[p] = normal
+        if mode == 1:
+            h.crack_strain_max[p] = ti.Vector([MIN_CRACK_STRAIN, 0.0])
+            sim.rock.averaging.begin_crack(sim, p, MIN_CRACK_STRAIN)
+        else:
+            h.slip[p] = ti.max(h.slip[p], MIN_CRACK_STRAIN)
+        return 0.0
+
+    @ti.func
+    def respond(self, sim: ti.template(), p, G, dt):
+        sigma, lost = crack_return(sim, p, G)
+        lost *= sim.particles.J[p]
+        h = sim.particles.history
+        h.dissipated[p] = h.dissipated[p] + lost
+        mode = sim.particles.mode[p]
+        if mode != h.failed[p] and has_failed(sim, p, mode):
+            h.failed[p] = mode
+        return sigma, lost
+
+    @ti.func
+    def stored(self, sim: ti.template(), p):
+        elastic = sim.rock.elasticity.energy(sim.particles.sigma[p])
+        return sim.particles.J[p] * elastic + sim.particles.J[p] * spring_energy(sim, p)
+
+    @ti.func
+    def damage(self, sim: ti.template(), p):
+        """Where it has lost most: no more than of cohesion, since slip costs tensile strength too."""
+        left, full = strength_left(sim, p), strengths(sim, p)
+        return 1.0 - ti.min(left[0], left[1]) / full[0]
+
+    @ti.func
+    def failed_mode(self, sim: ti.template(), p):
+        """At once without fracture energy; else when it has opened or slipped by what costs half of the strength."""
+        return sim.particles.history.failed[p]
+
+    @ti.func
+    def released(self, sim: ti.template(), p, lost):
+        return sim.particles.history.dissipated[p]

@@ -1,6 +1,6 @@
 """How strength is lost while a crack opens or slips: at once, or over a fracture energy spread over a crack band.
 
-A law gives the share of strength that is left after a crack strain. Crack band (Bazant & Oh 1983, Mater. Struct.
+A law gives the ratio of strength that is left after a crack strain. Crack band (Bazant & Oh 1983, Mater. Struct.
 16:155): a band of width h opens by w = h x crack strain and must cost G_f per area of crack whatever h is, so the
 softening branch is scaled by h. `strength` is the value at which softening starts [Pa], `energy` G_f [J/m^2].
 """
@@ -27,7 +27,7 @@ class Brittle:
         return 0.0
 
     @ti.func
-    def share(self, strain, strength, energy, h):
+    def ratio(self, strain, strength, energy, h):
         return ti.select(strain > 0.0, 0.0, 1.0)
 
 
@@ -47,7 +47,7 @@ class LinearSoftening:
         return strength**2 / (2.0 * energy)
 
     @ti.func
-    def share(self, strain, strength, energy, h):
+    def ratio(self, strain, strength, energy, h):
         return ti.max(1.0 - 0.5 * strain * h * strength / energy, 0.0)
 
 
@@ -67,5 +67,5 @@ class ExponentialSoftening:
         return strength**2 / energy
 
     @ti.func
-    def share(self, strain, strength, energy, h):
+    def ratio(self, strain, strength, energy, h):
         return ti.exp(-strain * h * strength / energy)

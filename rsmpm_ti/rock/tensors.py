@@ -130,26 +130,44 @@ def hughes_winget(s: ti.template(), G: ti.template()):
 
 
 @ti.func
-def rotation_angle(G: ti.template()):
-    """Angle [rad] by which `hughes_winget` turns a packed 2D stress."""
+def rotated_vector(n: ti.template(), G: ti.template()):
+    """A 2D unit vector turned as `hughes_winget` turns a stress, and of length 1 again."""
     q = G[0, 0] * G[1, 1] - G[0, 1] * G[1, 0]
     d = 1.0 + 0.5 * (G[0, 0] + G[1, 1]) + 0.25 * q
-    return 2.0 * ti.atan2(0.25 * (G[1, 0] - G[0, 1]), d)
+    half = 0.25 * (G[1, 0] - G[0, 1]) / d  # tan of half the angle of rotation
+    cos, sin = 1.0 - half * half, 2.0 * half  # both times 1 + half^2
+    return ti.Vector([cos * n[0] - sin * n[1], sin * n[0] + cos * n[1]]).normalized()
 
 
 @ti.func
-def turned(s: ti.template(), angle):
-    """A packed 2D stress in a frame turned by `angle` [rad]: (nn, tt, zz, nt)."""
-    cos_2, sin_2 = ti.cos(2.0 * angle), ti.sin(2.0 * angle)
+def in_frame(s: ti.template(), n: ti.template()):
+    """A packed 2D stress in the frame whose first axis is the unit vector n: (nn, tt, zz, nt)."""
+    cos_2, sin_2 = n[0] * n[0] - n[1] * n[1], 2.0 * n[0] * n[1]
     centre, a, b = 0.5 * (s[0] + s[1]), 0.5 * (s[0] - s[1]), s[3]
     turned_a, turned_b = a * cos_2 + b * sin_2, b * cos_2 - a * sin_2
     return ti.Vector([centre + turned_a, centre - turned_a, s[2], turned_b])
 
 
 @ti.func
+def out_of_frame(s: ti.template(), n: ti.template()):
+    """The inverse of `in_frame`."""
+    return in_frame(s, ti.Vector([n[0], -n[1]]))
+
+
+@ti.func
 def principal_angle(s: ti.template()):
     """Angle [rad] of the larger in-plane principal stress of a packed 2D stress from the first axis."""
     return 0.5 * ti.atan2(2.0 * s[3], s[0] - s[1])
+
+
+@ti.func
+def principal_normal(s: ti.template()):
+    """Unit vector along the larger in-plane principal stress of a packed stress, [dim]; 0 in 3D, where none is told."""
+    n = ti.Vector.zero(float, ti.static(2 if s.n == 4 else 3))
+    if ti.static(s.n == 4):
+        angle = principal_angle(s)
+        n[0], n[1] = ti.cos(angle), ti.sin(angle)
+    return n
 
 
 @ti.func

@@ -15,7 +15,6 @@ from rsmpm_ti.output.files import CHECKPOINTS
 from rsmpm_ti.records.snapshot import HISTORY_COLUMNS
 from rsmpm_ti.solver.outflow import Dropped
 
-EVENT_COLUMNS = ("time", "x", "mode", "sigma_1", "sigma_3", "released", "id")
 LEDGER = ("impulse", "work", "latest", "body_work", "viscous", "released")
 PER_SLOT = ("body_work", "viscous", "released")
 """Those of the ledger that have a slot for each thread: their sum is what counts."""
@@ -80,7 +79,7 @@ def _particle_fields(sim) -> list[tuple[str, object]]:
 
 
 def _event_columns(sim) -> tuple[str, ...]:
-    return (*EVENT_COLUMNS, "crack_angle") if sim.events.directional else EVENT_COLUMNS
+    return sim.events.names
 
 
 def read(out: Path, identity: dict) -> dict[str, np.ndarray] | None:

@@ -21,7 +21,7 @@ class Readout:
     time: float  # [s]
     fields: dict[str, np.ndarray]  # of `Particles`, by name, those that the rock has; and what `margins` returns
     failed: tuple[np.ndarray, np.ndarray]  # id and time [s] of the failure events, in no order
-    band: float  # width of the band over which a crack in a particle opens [m]
+    history: dict[str, np.ndarray]  # what the law after failure remembers, by name
 
     def snapshot(self) -> Snapshot:
         """The particles in the order of their ids, without those that were dropped."""
@@ -41,11 +41,12 @@ class Readout:
             a, b = places[k]
             sigma[:, a, b] = sigma[:, b, a] = packed[:, k]
         sigma_1, sigma_3 = extreme_stresses(packed)
-        aperture, crack_angle = np.zeros(n), np.full(n, np.nan)
-        if "opening" in fields:
-            aperture = self.band * column("opening").max(axis=1)
+        history = {name: values.take(order, axis=0) for name, values in self.history.items()}
+        crack_angle = np.full(n, np.nan)
+        if "crack_normal" in history:
             begun = column("mode", np.int8) > 0
-            crack_angle[begun] = np.degrees(column("crack_angle")[begun]) % 180.0
+            across, up = history["crack_normal"][begun, :2].astype(np.float64).T
+            crack_angle[begun] = np.degrees(np.arctan2(up, across)) % 180.0
         return Snapshot(
             time=self.time,
             id=ids[order],
@@ -62,14 +63,15 @@ class Readout:
             margin=column("margin"),
             governs=column("governs", np.int8),
             damage=column("damage"),
-            aperture=aperture,
+            aperture=column("aperture") if "aperture" in fields else np.zeros(n),
             crack_angle=crack_angle,
+            history=history,
         )
 
     def _modes(self, order: np.ndarray) -> np.ndarray:
         """Rock with a direction may have begun to fail, which is its `mode`, and not have `failed`."""
-        name = "failed" if "failed" in self.fields else "mode"
-        return self.fields[name][order].astype(np.int8) if name in self.fields else np.zeros(len(order), dtype=np.int8)
+        modes = self.history.get("failed", self.fields.get("mode", np.zeros(len(self.fields["id"]))))
+        return modes[order].astype(np.int8)
 
     def _failure_times(self) -> np.ndarray:
         """By id; of a particle that failed twice, the later."""
@@ -85,15 +87,19 @@ def read_out(sim: Simulation, time: float) -> Readout:
     particles, events = sim.particles, sim.events
     names = ["id", "reference", "u", "v", "sigma", "volume", "J"]
     names += ["mode"] * particles.breaks + ["strength"] * particles.varied
-    names += ["failed", "opening", "crack_angle"] * particles.cracks
     fields = {name: getattr(particles, name).to_numpy() for name in names}
     margin, governs, damage = margins(sim)
+    fields |= {"margin": margin, "governs": governs, "damage": damage}
+    history = particles.history.to_numpy()
+    aperture = sim.rock.after_failure.aperture(history, sim.band) if particles.breaks else None
+    if aperture is not None:
+        fields["aperture"] = aperture
     count = events.count[None]
     return Readout(
         time=time,
-        fields=fields | {"margin": margin, "governs": governs, "damage": damage},
+        fields=fields,
         failed=(events.id.to_numpy()[:count], events.time.to_numpy()[:count]),
-        band=sim.band if particles.cracks else 0.0,
+        history=history,
     )
 
 
@@ -118,11 +124,8 @@ def extreme_stresses(packed: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
 
 def read_events(sim: Simulation) -> EventTable:
     """All events so far, sorted by time, then particle id, so that threads do not show."""
-    names = ["time", "x", "mode", "sigma_1", "sigma_3", "released", "id"]
-    if sim.events.directional:
-        names.append("crack_angle")
     n = sim.events.count[None]
-    columns = {name: getattr(sim.events, name).to_numpy()[:n] for name in names}
+    columns = {name: getattr(sim.events, name).to_numpy()[:n] for name in sim.events.names}
     order = np.lexsort((columns["id"], columns["time"]))
     columns = {name: column[order] for name, column in columns.items()}
     return EventTable(**columns, onset=float(sim.events.onset[None]))

@@ -5,10 +5,8 @@ from dataclasses import dataclass
 import numpy as np
 import taichi as ti
 
-from rsmpm_ti.failure.smeared_crack_stress import spring_energy
 from rsmpm_ti.fields.records import SCALARS
 from rsmpm_ti.fields.state import Simulation
-from rsmpm_ti.rock.after_failure import pressure_energy
 
 FIXED = len(SCALARS) + 2
 """Places in the report before the momentum: the scalars and the two failure counts."""
@@ -38,21 +36,6 @@ class Survey:
 
 
 @ti.func
-def gaping(sim: ti.template(), p):
-    """Whether a particle lies between pieces that may part as far as they like: its J then warns of nothing.
-
-    That is a crack, or failed rock that carries nothing at its J; one that J still makes pull is no gap.
-    """
-    apart = False
-    if ti.static(sim.particles.cracks):
-        apart = sim.particles.mode[p] != 0
-    elif ti.static(sim.particles.breaks):
-        carried = sim.rock.after_failure.pressure(ti.static(sim.rock.elasticity.bulk), sim.particles.J[p])
-        apart = sim.particles.mode[p] != 0 and carried == 0.0
-    return apart
-
-
-@ti.func
 def left_domain(sim: ti.template(), xi):
     """Whether a particle at grid coordinates xi is more than two cells beyond the domain: there stencils may end."""
     left = False
@@ -72,22 +55,18 @@ def _survey(sim: ti.template()):
         v = particles.v[p]
         m_p = sim.density * particles.volume[p]
         sigma, J = particles.sigma[p], particles.J[p]
-        stored, J_intact = J * rock.elasticity.energy(sigma), J
+        stored, J_intact, J_open = J * rock.elasticity.energy(sigma), J, J  # J_open: of what may not gape
         if ti.static(particles.breaks):
             if particles.mode[p] != 0:
                 J_intact = 0.0
-                if ti.static(particles.cracks):
-                    stored += J * spring_energy(sim, p)
-                else:
-                    bulk = ti.static(rock.elasticity.bulk)
-                    stored = pressure_energy(rock.after_failure.pressure(bulk, J), bulk, J)
+                stored = rock.after_failure.stored(sim, p)
+                if rock.after_failure.is_open(sim, p) == 1:
+                    J_open = 1.0
         xi = grid.local(particles.reference[p] + particles.u[p])
         sick = 0
         if left_domain(sim, xi):
-            if ti.static(sim.drops):
-                report.outside[None] += 1.0
-            else:
-                sick = 1
+            sick = sim.outside_is_sick
+            report.outside[None] += 1.0 - sick
         for d in ti.static(range(sim.dim)):
             if ti.math.isnan(v[d]) or ti.math.isinf(v[d]):
                 sick = 1
@@ -102,11 +81,11 @@ def _survey(sim: ti.template()):
         else:
             report.kinetic[None] += ti.cast(0.5 * m_p * v.dot(v), ti.f64)
             report.elastic[None] += ti.cast(particles.volume[p] * stored, ti.f64)
-            if ti.static(sim.confined):  # the pressure's work: p times the volume that the bodies gave way
-                report.work[None] += ti.cast(sim.confinement * particles.volume[p] * (sim.J_start - J), ti.f64)
+            # the confining pressure's work: p times the volume that the bodies gave way
+            report.work[None] += ti.cast(sim.confinement * particles.volume[p] * (sim.J_start - J), ti.f64)
             ti.atomic_max(report.speed[None], ti.cast(v.norm(), ti.f64))
             ti.atomic_min(report.J_min[None], ti.cast(J, ti.f64))
-            ti.atomic_max(report.J_max[None], ti.cast(ti.select(gaping(sim, p), 1.0, J), ti.f64))
+            ti.atomic_max(report.J_max[None], ti.cast(J_open, ti.f64))
             ti.atomic_max(report.J_intact[None], ti.cast(J_intact, ti.f64))
             for d in ti.static(range(sim.dim)):
                 report.momentum[d][None] += ti.cast(m_p * v[d], ti.f64)

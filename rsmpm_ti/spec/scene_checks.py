@@ -143,39 +143,15 @@ def check_motion(scene) -> None:
         raise refuse("loading.body_force", scene.loading.body_force, allowed)
 
 
-MOST_CELLS = 64
-"""Longest length of averaging [cells]; every node then sums 450 others along each axis."""
-
-
 def check_cracks(rock, shape, dim: int, dx: float) -> None:
-    """Refuse rock that this grid (shape functions, dimension, cell size dx [m]) cannot crack as its laws say."""
+    """Refuse rock that this grid (shape functions, dimension, cell size dx [m]) cannot break as its laws say."""
     law = rock.after_failure
-    if not law.directional:
-        if rock.averaging.acts:
+    if dim not in law.dimensions:
+        raise refuse("rock.after_failure", law, f"isotropic in {dim}D", "use CompressionOnly, Void or Clipped")
+    if rock.averaging.acts:
+        if not law.oriented:
             remedy = "use Local() or after_failure = Directional(...)"
             raise refuse("rock.averaging", rock.averaging, "Local with the paper's laws after failure", remedy)
-        return
-    if dim == 3:
-        raise refuse("rock.after_failure", law, "isotropic in 3D", "use CompressionOnly, Void or Clipped")
-    if rock.averaging.acts:
-        least = rock.averaging.least_length(dx, shape.variance)
-        if not rock.averaging.length >= least:
-            remedy = f"use dx of at most {rock.averaging.length / least * dx:.4g} m"
-            raise refuse("rock.averaging.length", rock.averaging.length, f"at least {least:.4g} m here", remedy)
-        if not rock.averaging.length <= MOST_CELLS * dx:
-            remedy = f"use dx of at least {rock.averaging.length / MOST_CELLS:.4g} m"
-            raise refuse("rock.averaging.length", rock.averaging.length, f"at most {MOST_CELLS} cells", remedy)
+        rock.averaging.check(dx, shape.variance)
     if rock.criterion.breaks:
-        criterion, elasticity = rock.criterion, rock.elasticity
-        _check_snap_back("G_f_I", criterion.tensile_strength, law.softening, elasticity.E, shape.crack_band, dx)
-        _check_snap_back("G_f_II", criterion.cohesion, law.softening, elasticity.mu, shape.crack_band, dx)
-
-
-def _check_snap_back(name: str, strength: float, softening, modulus: float, cells: float, dx: float) -> None:
-    """A band of `cells` must not lose strength faster than the rock in it unloads: Bazant & Oh (1983), eq. 34."""
-    energy = getattr(softening, name)
-    fall = softening.steepest(strength, energy) * cells * dx
-    if not fall < modulus:
-        remedy = f"use a dx below {modulus / fall * dx:.4g} m, or more energy"
-        allowed = f"large enough that a crack band of {1e3 * cells * dx:.4g} mm does not snap back"
-        raise refuse(f"after_failure.softening.{name}", energy, allowed, remedy)
+        law.check(rock, shape, dx)

@@ -8,8 +8,8 @@ from broken_bands import SPACING, failures, history, lattice, scattered, snapsho
 from scipy.spatial import cKDTree
 
 from rsmpm_ti.analysis.crack_bands import find_bands, measure_cracks, openings
-from rsmpm_ti.analysis.crack_growth import growth, rayleigh_speed, tip_speed
 from rsmpm_ti.analysis.crack_opening import jumps
+from rsmpm_ti.analysis.crack_path import growth, rayleigh_speed, tip_speed
 from rsmpm_ti.analysis.flaw_tips import flaw_tips, initiations
 from rsmpm_ti.analysis.load_curve import load_at
 from rsmpm_ti.analysis.wing_cracks import FEWEST
@@ -136,7 +136,7 @@ def test_rayleigh_speed_is_that_of_the_papers_rock():
     shear = np.sqrt(E / (2.0 * (1.0 + nu)) / density)
     strain = np.sqrt(E * (1.0 - nu) / ((1.0 + nu) * (1.0 - 2.0 * nu)) / density)
     stress = np.sqrt(E / (1.0 - nu**2) / density)
-    # shared/physics.md, table A: four digits after the point were not kept
+    # docs/references.md, section 1, to one digit after the point
     assert rayleigh_speed(shear, strain) == pytest.approx(1524.8, abs=0.05)
     assert rayleigh_speed(shear, stress) == pytest.approx(1519.5, abs=0.05)
 

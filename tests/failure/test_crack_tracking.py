@@ -7,15 +7,16 @@ from dataclasses import replace
 import numpy as np
 import pytest
 import taichi as ti
+from harness import unit
 
 from rsmpm_ti.failure import crack_tracking as tracking
-from rsmpm_ti.failure.crack_tracking import judge, track_cracks
-from rsmpm_ti.failure.nonlocal_fields import mark_hot, smooth_stress
+from rsmpm_ti.failure.crack_tracking import evaluate_overload, track_cracks
+from rsmpm_ti.failure.nonlocal_fields import mark_overloaded, smooth_stress
 from rsmpm_ti.failure.stress_update import failure_by_own_stress
 from rsmpm_ti.fields.cell_order import sort_particles
 from rsmpm_ti.fields.grid import Grid
 from rsmpm_ti.fields.nonlocal_sums import NonlocalSums
-from rsmpm_ti.fields.state import NO_SHADE, Simulation
+from rsmpm_ti.fields.state import Simulation
 from rsmpm_ti.rock.criteria import MohrCoulomb
 from rsmpm_ti.rock.elasticity import Hooke
 from rsmpm_ti.rock.heterogeneity import Uniform, Weibull
@@ -63,10 +64,10 @@ def simulation(heterogeneity=Uniform()) -> Simulation:  # noqa: B008
 
 
 def rested(sim: Simulation) -> Simulation:
-    """Nothing has cracked, nothing is shaded."""
-    particles = sim.particles
-    for name, value in (("mode", 0), ("slip", 0.0), ("widest", 0.0), ("crack_angle", 0.0), ("shade_angle", NO_SHADE)):
-        getattr(particles, name).fill(value)
+    """Nothing has cracked, nothing is excluded."""
+    particles, h = sim.particles, sim.particles.history
+    for field in (particles.mode, h.slip, h.crack_strain_max, h.crack_normal, particles.excluding_normal):
+        field.fill(0)
     sim.events.onset[None] = math.inf
     return sim
 
@@ -110,18 +111,19 @@ def beside(sim: Simulation, crack: int, angle: float) -> np.ndarray:
 
 
 @pytest.mark.parametrize("angle", [0.0, 30.0, -70.0])
-def test_only_the_most_overloaded_particle_of_a_hump_cracks_and_shades_what_lies_beside_it(angle):
+def test_only_the_most_overloaded_particle_of_a_hump_cracks_and_excludes_what_lies_beside_it(angle):
     sim = rested(simulation())
     top = particle_near(sim, 15.3, 16.8)
     sigma = pulled_along(angle, humps(sim, [top]))
     assert look(sim, sigma) == {top}
     assert (sim.particles.overload.to_numpy() > 0.0).sum() > 20  # the others were overloaded too
-    assert sim.particles.crack_angle.to_numpy()[top] == pytest.approx(math.radians(angle), abs=1e-6)
+    normal = sim.particles.history.crack_normal.to_numpy()[top]
+    assert normal == pytest.approx(unit(math.radians(angle)), abs=1e-6)
     assert sim.events.onset[None] == 1.0 and sim.events.count[None] == 0
-    shade, side = sim.particles.shade_angle.to_numpy(), beside(sim, top, angle)
+    excluding, side = sim.particles.excluding_normal.to_numpy(), beside(sim, top, angle)
     assert 100 < side.sum() < 200  # 130 degrees of 180 of a circle that holds 201 particles
-    assert (shade[side] == sim.particles.crack_angle.to_numpy()[top]).all()
-    assert (np.delete(shade, np.append(np.flatnonzero(side), top)) == NO_SHADE).all()
+    assert (excluding[side] == normal).all()
+    assert (np.delete(excluding, np.append(np.flatnonzero(side), top), axis=0) == 0.0).all()
 
 
 def test_equal_humps_far_from_each_other_crack_in_the_same_look():
@@ -131,7 +133,7 @@ def test_equal_humps_far_from_each_other_crack_in_the_same_look():
 
 
 def test_crack_grows_from_its_ends_as_a_line():
-    """Stress is given and stays: nothing but the shade keeps the whole hump from cracking, look after look."""
+    """Stress is given and stays: nothing but exclusion keeps the whole hump from cracking, look after look."""
     sim = rested(simulation())
     top = particle_near(sim, 16.3, 16.3)
     sigma, cracked = pulled_along(0.0, humps(sim, [top], width=4e-3)), []
@@ -144,12 +146,12 @@ def test_crack_grows_from_its_ends_as_a_line():
     assert sim.events.onset[None] == 0.0
 
 
-def test_shade_holds_for_a_mean_stress_along_its_crack_only():
+def test_exclusion_holds_for_a_mean_stress_along_its_crack_only():
     sim = rested(simulation())
     top = particle_near(sim, 15.3, 16.8)
     sigma = pulled_along(0.0, humps(sim, [top]))
     for degrees, cracks in ((0.0, False), (40.0, False), (-40.0, False), (180.0, False), (50.0, True), (90.0, True)):
-        rested(sim).particles.shade_angle.fill(math.radians(degrees))
+        rested(sim).particles.excluding_normal.fill(ti.Vector(unit(math.radians(degrees))))
         assert look(sim, sigma) == ({top} if cracks else set()), degrees
 
 
@@ -160,7 +162,7 @@ def own_modes(sim: ti.template(), mode: ti.types.ndarray()):
 
 
 @pytest.mark.parametrize(
-    "stress, shade, expected",
+    "stress, normal, expected",
     [
         ((3.0, 0.0, 0.0, 0.0), 0.0, 1),
         ((3.0, 0.0, 0.0, 0.0), math.radians(40.0), 1),
@@ -168,21 +170,21 @@ def own_modes(sim: ti.template(), mode: ti.types.ndarray()):
         ((3.0, 0.0, 0.0, 0.0), 0.5 * math.pi, 0),
         ((0.0, 3.0, 0.0, 0.0), 0.5 * math.pi, 1),
         ((0.0, 3.0, 0.0, 0.0), 0.0, 0),
-        ((3.0, 0.0, 0.0, 0.0), NO_SHADE, 0),
+        ((3.0, 0.0, 0.0, 0.0), None, 0),
         ((1.9, 0.0, 0.0, 0.0), 0.0, 0),
-        ((0.0, -30.0, 0.0, 0.0), NO_SHADE, 2),  # shear is for a particle's own stress: 25.5 MPa
+        ((0.0, -30.0, 0.0, 0.0), None, 2),  # shear is for a particle's own stress: 25.5 MPa
         ((0.0, -30.0, 0.0, 0.0), 0.0, 2),
-        ((6.0, 0.0, 0.0, 0.0), NO_SHADE, 0),  # 5.55 MPa alone reaches Mohr-Coulomb: for the mean to judge, too
-        ((6.0, -22.0, 0.0, 0.0), NO_SHADE, 2),  # beyond 25.52 - 4.599 * 2 MPa it is shear, with the cut-off's tension
-        ((6.0, -15.0, 0.0, 0.0), NO_SHADE, 0),
-        ((2.1, -30.0, 0.0, 0.0), NO_SHADE, 2),  # tension is for the mean, shear is not
+        ((6.0, 0.0, 0.0, 0.0), None, 0),  # 5.55 MPa alone reaches Mohr-Coulomb: for the mean to judge, too
+        ((6.0, -22.0, 0.0, 0.0), None, 2),  # beyond 25.52 - 4.599 * 2 MPa it is shear, with the cut-off's tension
+        ((6.0, -15.0, 0.0, 0.0), None, 0),
+        ((2.1, -30.0, 0.0, 0.0), None, 2),  # tension is for the mean, shear is not
         ((2.1, -30.0, 0.0, 0.0), 0.0, 1),  # both by its own: tension first, as in the paper
     ],
 )
-def test_shaded_particle_fails_by_its_own_stress_if_that_would_open_the_crack_beside(stress, shade, expected):
+def test_excluded_particle_fails_by_its_own_stress_if_that_would_open_the_crack_beside(stress, normal, expected):
     sim = rested(simulation())
     sim.particles.sigma.from_numpy(np.tile(MPA * np.array(stress), (sim.particles.count, 1)))
-    sim.particles.shade_angle.fill(shade)
+    sim.particles.excluding_normal.fill(0.0 if normal is None else ti.Vector(unit(normal)))
     mode = np.zeros(sim.particles.count, dtype=np.int32)
     own_modes(sim, mode)
     assert (mode == expected).all()
@@ -195,8 +197,8 @@ def test_overload_is_over_the_strength_of_the_particle_itself():
     for stress in (1.99 * k.min(), 2.01 * k.min(), 1.8):
         sim.particles.sigma.from_numpy(pulled_along(0.0, np.full(len(k), stress)))
         smooth_stress(sim)
-        mark_hot(sim, sim.means.weakest)
-        judge(sim)
+        mark_overloaded(sim, sim.means.weakest)
+        evaluate_overload(sim)
         load = stress / (2.0 * k)
         np.testing.assert_allclose(sim.particles.overload.to_numpy(), np.where(load >= 1.0, load, 0.0), rtol=1e-12)
     cracked = look(sim, pulled_along(0.0, np.full(len(k), 2.01 * k.min())))
@@ -224,6 +226,6 @@ def test_cracks_beyond_the_most_of_one_look_wait_for_the_next(monkeypatch):
         found.append(look(sim, sigma) & set(tops))
         seen |= found[-1]
     assert seen == set(tops) and len(found[0]) == 2 and sum(map(len, found)) == 5
-    shade = sim.particles.shade_angle.to_numpy()
+    excluding = np.linalg.norm(sim.particles.excluding_normal.to_numpy(), axis=1)
     for top in tops:
-        assert (shade[beside(sim, top, 0.0) & (sim.particles.mode.to_numpy() == 0)] < NO_SHADE).all()
+        assert excluding[beside(sim, top, 0.0) & (sim.particles.mode.to_numpy() == 0)] == pytest.approx(1.0)

@@ -62,8 +62,8 @@ def test_every_law_of_a_crack_has_its_closed_form():
 def test_law_without_direction_gives_a_pressure():
     """What `test_failed_cell` looks for: nothing else is missing from its formulas or from ours."""
     kinds = typing.get_args(typing.get_type_hints(Rock)["after_failure"])
-    assert {kind for kind in kinds if not kind.directional} == {k for k in kinds if hasattr(k, "pressure")}
-    assert {kind for kind in kinds if kind.directional} == {Directional}
+    assert {kind for kind in kinds if not kind.oriented} == {k for k in kinds if hasattr(k, "pressure")}
+    assert {kind for kind in kinds if kind.oriented} == {Directional}
 
 
 # one particle per path and one kernel per law: all that a test needs to know of a law is taken from one launch

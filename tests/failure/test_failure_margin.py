@@ -6,9 +6,11 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+import taichi as ti
+from harness import unit
 
 from rsmpm_ti.fields.cell_order import sort_particles
-from rsmpm_ti.fields.state import NO_SHADE, Simulation
+from rsmpm_ti.fields.state import Simulation
 from rsmpm_ti.output.files import write_vtu
 from rsmpm_ti.records.snapshot import SHEAR, TENSION
 from rsmpm_ti.rock.criteria import MohrCoulomb, Unbreakable
@@ -64,9 +66,12 @@ def stressed(stress, **changes) -> Simulation:
     x = sim.particles.reference.to_numpy()
     packed = np.stack([np.broadcast_to(np.asarray(s, dtype=float), len(x)) for s in stress(x)], axis=1)
     sim.particles.sigma.from_numpy(packed * MPA)
-    for name, value in (("mode", 0), ("slip", 0.0), ("widest", 0.0), ("opening", 0.0), ("shade_angle", NO_SHADE)):
-        if hasattr(sim.particles, name):
-            getattr(sim.particles, name).fill(value)
+    for component in sim.particles.history.components:
+        component.fill(0)
+    if sim.particles.breaks:
+        sim.particles.mode.fill(0)
+    if sim.averaging:
+        sim.particles.excluding_normal.fill(0.0)
     return sim
 
 
@@ -129,15 +134,15 @@ def test_mean_stress_decides_on_tension_where_it_is_asked_to():
 
 def test_own_stress_decides_beside_a_crack():
     sim = averaged()
-    shade = sim.particles.shade_angle
-    shade.fill(0.0)  # a crack with its normal along x, as sigma_1 is
+    excluding = sim.particles.excluding_normal
+    excluding.fill(ti.Vector([1.0, 0.0]))  # a crack with its normal along x, as sigma_1 is
     state = look(sim)
     right = state.x[:, 0] > 12.0 * MM
     np.testing.assert_allclose(state.margin[right], 0.25, atol=1e-12)
     np.testing.assert_allclose(state.margin[~right], 1.0, atol=1e-12)
-    shade.fill(0.5 * math.pi)  # one that runs along x shades from nothing here
+    excluding.fill(ti.Vector([0.0, 1.0]))  # one that runs along x excludes nothing here
     across = look(sim).margin
-    shade.fill(NO_SHADE)
+    excluding.fill(0.0)
     np.testing.assert_array_equal(across, look(sim).margin)
 
 
@@ -193,10 +198,10 @@ def test_damage_and_opening_follow_the_softening_law(softening):
     widest = np.linspace(0.0, 25e-6, n)  # [m]; linear softening is over at 20 um
     now = 0.6 * widest
     particles.mode.fill(TENSION)
-    particles.crack_angle.fill(-0.25 * math.pi)
+    particles.history.crack_normal.fill(ti.Vector(unit(-0.25 * math.pi)))
     band = 2.0 * DX
-    particles.widest.from_numpy(np.stack([widest, 0.3 * widest], axis=1) / band)
-    particles.opening.from_numpy(np.stack([now, 0.3 * now], axis=1) / band)
+    particles.history.crack_strain_max.from_numpy(np.stack([widest, 0.3 * widest], axis=1) / band)
+    particles.history.crack_strain.from_numpy(np.stack([now, 0.3 * now], axis=1) / band)
     state, order = look(sim), np.argsort(particles.id.to_numpy())
     relative = widest * 2.0 * MPA / 20.0  # w f_t/G_f
     lost = np.minimum(0.5 * relative, 1.0) if softening is SOFT else 1.0 - np.exp(-relative)
@@ -211,11 +216,11 @@ def test_slip_and_the_second_crack_damage_too():
     particles, band = sim.particles, 2.0 * DX
     particles.mode.fill(SHEAR)
     half_slip = 200.0 / (5.95 * MPA) / band  # half of cohesion is gone at w = G_f/c
-    particles.slip.fill(half_slip)
+    particles.history.slip.fill(half_slip)
     np.testing.assert_allclose(look(sim).damage, 0.5, rtol=1e-12)
     second = np.zeros((particles.count, 2))
     second[:, 1] = 16e-6 / band  # 80 % of the tensile strength along the first crack
-    particles.widest.from_numpy(second)
+    particles.history.crack_strain_max.from_numpy(second)
     np.testing.assert_allclose(look(sim).damage, 0.8, rtol=1e-12)
 
 
@@ -225,8 +230,8 @@ def test_vtu_holds_margin_and_damage(tmp_path):
     wide = np.zeros((sim.particles.count, 2))
     wide[::3, 0] = 12e-6 / (2.0 * DX)
     sim.particles.mode.from_numpy(np.where(wide[:, 0] > 0.0, TENSION, 0).astype(np.int32))
-    sim.particles.widest.from_numpy(wide)
-    sim.particles.opening.from_numpy(wide)
+    sim.particles.history.crack_strain_max.from_numpy(wide)
+    sim.particles.history.crack_strain.from_numpy(wide)
     state = look(sim)
     write_vtu(tmp_path / "p.vtu", state)
     data = meshio.read(tmp_path / "p.vtu").point_data

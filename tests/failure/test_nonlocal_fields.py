@@ -1,55 +1,21 @@
 """Mean stress over a length of the rock: what it keeps, what it attenuates, and that it misses no overload."""
 
-import functools
 import math
 
 import numpy as np
 import pytest
 import taichi as ti
 from harness import name_of
+from nonlocal_block import DX, block, places
 
-from rsmpm_ti.failure.nonlocal_fields import mark_hot, mean_stress, near_hot, smooth_stress
-from rsmpm_ti.fields.cell_order import sort_particles
+from rsmpm_ti.failure.nonlocal_fields import mark_overloaded, mean_stress, near_overloaded, smooth_stress
 from rsmpm_ti.fields.state import Simulation
 from rsmpm_ti.method.shape import Gimp, Linear, QuadraticBSpline
-from rsmpm_ti.rock.criteria import MohrCoulomb
-from rsmpm_ti.rock.elasticity import Hooke
-from rsmpm_ti.rock.nonlocal_mean import Nonlocal
-from rsmpm_ti.rock.rock import Rock
-from rsmpm_ti.rock.smeared_crack import Directional
 from rsmpm_ti.spec.boundaries import Wall
-from rsmpm_ti.spec.regions import Box, Difference, Disc, Slit
-from rsmpm_ti.spec.scene import Body, Domain, Loading, Scene, Schedule
-from rsmpm_ti.spec.seeding import Jittered, Lattice
+from rsmpm_ti.spec.regions import Disc, Slit
+from rsmpm_ti.spec.seeding import Jittered
 
 pytestmark = pytest.mark.usefixtures("taichi_f64")
-
-DX = 1e-3
-ROCK = {
-    "density": 2600.0,
-    "elasticity": Hooke(E=17e9, nu=0.14),
-    "criterion": MohrCoulomb(cohesion=5.95e6, friction_angle=40.0, tensile_strength=2e6),
-    "after_failure": Directional(),
-}
-
-
-@functools.cache  # kernels compile for each one; every test gives its own stress
-def block(cells, shape=QuadraticBSpline(), length=2.0 * DX, seeding=Lattice(), removed=(), walls=()) -> Simulation:  # noqa: B008
-    """A square of rock, `cells` of 1 mm wide."""
-    edge = (cells * DX,) * 2
-    box = Box(lower=(0.0, 0.0), upper=edge)
-    scene = Scene(
-        title="block",
-        domain=Domain(lower=(0.0, 0.0), upper=edge, dx=DX),
-        bodies=(Body(region=Difference(whole=box, removed=removed) if removed else box, seeding=seeding),),
-        rock=Rock(**ROCK, averaging=Nonlocal(length=length)),
-        loading=Loading(boundaries=walls),
-        schedule=Schedule(t_end=1e-6),
-        shape=shape,
-    )
-    sim = Simulation(scene, scene.particles())
-    sort_particles(sim)
-    return sim
 
 
 @ti.kernel
@@ -58,21 +24,17 @@ def read(sim: ti.template(), mean: ti.types.ndarray(), near: ti.types.ndarray())
         m = mean_stress(sim, p)
         for k in ti.static(range(4)):
             mean[p, k] = m[k]
-        near[p] = ti.cast(near_hot(sim, p), ti.i32)
+        near[p] = ti.cast(near_overloaded(sim, p), ti.i32)
 
 
 def averaged(sim: Simulation, sigma: np.ndarray, limit: float = 0.0) -> tuple[np.ndarray, np.ndarray]:
     """(mean stress [n, 4], whether the particle is near a node where it reaches `limit` [n]) of stress [n, 4]."""
     sim.particles.sigma.from_numpy(np.ascontiguousarray(sigma))
     smooth_stress(sim)
-    mark_hot(sim, limit)
+    mark_overloaded(sim, limit)
     mean, near = np.zeros((len(sigma), 4)), np.zeros(len(sigma), dtype=np.int32)
     read(sim, mean, near)
     return mean, near == 1
-
-
-def places(sim: Simulation) -> np.ndarray:
-    return sim.particles.reference.to_numpy()
 
 
 def test_uniform_stress_is_its_own_mean_at_faces_flaws_and_walls():
@@ -186,6 +148,6 @@ def test_no_overloaded_particle_is_spared_the_reading(jittered, share):
         assert near[first >= limit * (1.0 + 1e-12)].all()
         # and the marks are worth it: most particles are spared where few are overloaded
         assert share < 0.99 or near.mean() < 0.25
-        assert sim.means.any_hot[None] == 1
+        assert sim.means.any_overloaded[None] == 1
     averaged(sim, sigma, 1e3)
-    assert sim.means.any_hot[None] == 0
+    assert sim.means.any_overloaded[None] == 0

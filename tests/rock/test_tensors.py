@@ -11,15 +11,17 @@ from rsmpm_ti.rock.tensors import (
     double_contraction,
     extreme_principals,
     hughes_winget,
+    in_frame,
     isotropic,
     midpoint_gradient,
+    out_of_frame,
     pack,
     principal_angle,
+    principal_normal,
     rotate,
-    rotation_angle,
+    rotated_vector,
     symmetric,
     trace,
-    turned,
     unpack,
 )
 from rsmpm_ti.solver.readout import extreme_stresses
@@ -256,46 +258,68 @@ def test_rotate_keeps_invariants_for_any_increment(taichi_real, dim):
             np.testing.assert_allclose(invariant(after), invariant(before), rtol=0.0, atol=limit)
 
 
-def test_turned_stress_is_that_seen_from_turned_axes(taichi_real):
-    """s' = R^T s R with the columns of R the turned axes; a quarter turn swaps nn and tt."""
+def test_stress_in_a_frame_is_that_seen_from_turned_axes(taichi_real):
+    """s' = R^T s R with the columns of R the turned axes; a quarter turn swaps nn and tt. And back again."""
 
     @ti.func
     def seen(a: ti.template(), p):
-        return turned(vector(a, p, 0, 4), a[p, 4])
+        s, n = vector(a, p, 0, 4), vector(a, p, 4, 2)
+        there = in_frame(s, n)
+        back = out_of_frame(there, n)
+        return ti.Vector([there[0], there[1], there[2], there[3], back[0], back[1], back[2], back[3]])
 
     s = random_packed(2, taichi_real, 61)
-    angles = rounded(np.concatenate([[0.5 * np.pi], np.linspace(-7.0, 7.0, 60)]), taichi_real)
+    angles = np.concatenate([[0.5 * np.pi], np.linspace(-7.0, 7.0, 60)])
     s[0] = [1.0, 2.0, 3.0, 4.0]
     R = rotations(2, angles)
     expected = packed(R.transpose(0, 2, 1) @ tensor(s) @ R, 2)
-    found = on_rows(seen, np.column_stack([s, angles]), 4, taichi_real)
-    # sine and cosine of twice an angle of 7 err by 14 round-offs, of stresses of size 4
-    np.testing.assert_allclose(found, expected, rtol=0.0, atol=100 * epsilon(taichi_real))
-    np.testing.assert_allclose(found[0], [2.0, 1.0, 3.0, -4.0], rtol=0.0, atol=30 * epsilon(taichi_real))
+    found = on_rows(seen, np.column_stack([s, R[:, 0, 0], R[:, 1, 0]]), 8, taichi_real)
+    # a few products of stresses of size 4 and of squares of a unit vector, which itself is rounded
+    np.testing.assert_allclose(found[:, :4], expected, rtol=0.0, atol=60 * epsilon(taichi_real))
+    np.testing.assert_allclose(found[:, 4:], s, rtol=0.0, atol=60 * epsilon(taichi_real))
+    np.testing.assert_allclose(found[0, :4], [2.0, 1.0, 3.0, -4.0], rtol=0.0, atol=30 * epsilon(taichi_real))
 
 
-def test_rotation_angle_is_the_angle_by_which_stress_is_turned(taichi_real):
-    """Against a finite rotation, and for any gradient against what `hughes_winget` does to a stress."""
-
-    @ti.func
-    def angle_of(a: ti.template(), p):
-        return ti.Vector([rotation_angle(matrix(a, p, 0, 2))])
+def test_unit_vector_turns_as_stress_does(taichi_real):
+    """Against a finite rotation; and for any gradient a turned stress in the turned frame is what it was before."""
 
     @ti.func
-    def turned_back(a: ti.template(), p):
-        G, s = matrix(a, p, 0, 2), vector(a, p, 4, 4)
+    def turned(a: ti.template(), p):
+        return rotated_vector(vector(a, p, 4, 2), matrix(a, p, 0, 2))
+
+    @ti.func
+    def difference(a: ti.template(), p):
+        G, n, s = matrix(a, p, 0, 2), vector(a, p, 4, 2), vector(a, p, 6, 4)
         moved, _ = hughes_winget(s, G)
-        return turned(moved, rotation_angle(G)) - s
+        return in_frame(moved, rotated_vector(n, G)) - in_frame(s, n)
 
-    angles = np.linspace(-2.9, 2.9, 60)
-    G = (rotations(2, angles) - np.eye(3))[:, :2, :2].reshape(60, 4)
-    found = on_rows(angle_of, G, 1, taichi_real)[:, 0]
+    rng, angles = np.random.default_rng(13), np.linspace(-2.9, 2.9, 60)
+    R = rotations(2, angles)[:, :2, :2]
+    n = np.stack([np.cos(7.0 * angles), np.sin(7.0 * angles)], axis=1)
+    found = on_rows(turned, np.column_stack([(R - np.eye(2)).reshape(60, 4), n]), 2, taichi_real)
     # half the angle's tangent is a ratio of numbers that lose 1/cos of it near half a turn
-    np.testing.assert_allclose(found, angles, rtol=0.0, atol=50 * epsilon(taichi_real) / np.cos(1.45) ** 2)
-    rng = np.random.default_rng(13)
-    rows = np.concatenate([rng.uniform(-0.8, 0.8, size=(200, 4)), rng.normal(size=(200, 4))], axis=1)
-    left = on_rows(turned_back, rows, 4, taichi_real)
+    limit = 50 * epsilon(taichi_real) / np.cos(1.45) ** 2
+    np.testing.assert_allclose(found, np.einsum("nij,nj->ni", R, n), rtol=0.0, atol=limit)
+    G = np.concatenate([rng.uniform(-0.8, 0.8, size=(200, 4)), np.zeros((60, 4))])
+    G[200:] = (R - np.eye(2)).reshape(60, 4)
+    around = rng.uniform(0.0, 2.0 * np.pi, len(G))
+    rows = np.column_stack([G, np.cos(around), np.sin(around), rng.normal(size=(len(G), 4))])
+    left = on_rows(difference, rows, 4, taichi_real)
     np.testing.assert_allclose(left, 0.0, rtol=0.0, atol=200 * epsilon(taichi_real))
+
+
+def test_principal_normal_is_the_direction_of_the_larger_stress(taichi_real):
+    """Both signs of a vector are one direction: its square with NumPy's eigenvector is 1."""
+
+    @ti.func
+    def normal(a: ti.template(), p):
+        return principal_normal(vector(a, p, 0, 4))
+
+    s = random_packed(2, taichi_real, 40)
+    _, axes = np.linalg.eigh(tensor(s)[:, :2, :2])
+    along = np.einsum("ni,ni->n", on_rows(normal, s, 2, taichi_real), axes[:, :, 1])
+    gap = np.hypot(s[:, 0] - s[:, 1], 2.0 * s[:, 3])
+    assert (1.0 - along**2 <= 20 * epsilon(taichi_real) * (1.0 + 4.0 / gap)).all()  # round-off of s turns it by 4/gap
 
 
 def test_principal_angle_is_that_of_the_larger_eigenvector(taichi_real):

@@ -14,7 +14,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from snapshots import snapshot_of
-from test_writer import NO_ROWS, started
+from writer_orders import NO_ROWS, started
 
 from rsmpm_ti.backend import kernel_cache
 from rsmpm_ti.errors import SceneError

@@ -7,18 +7,19 @@ import pytest
 import taichi as ti
 
 from rsmpm_ti.errors import UnstableRun
-from rsmpm_ti.failure.stress_update import check_and_release, update_stress
+from rsmpm_ti.failure.stress_update import check_failure, update_stress
 from rsmpm_ti.fields.cell_order import sort_particles
 from rsmpm_ti.fields.state import Simulation
 from rsmpm_ti.method.shape import Linear
 from rsmpm_ti.mpm.clock import Clock
 from rsmpm_ti.output.files import write_events
 from rsmpm_ti.rock.after_failure import Clipped, CompressionOnly
+from rsmpm_ti.rock.crack_return import MIN_CRACK_STRAIN
 from rsmpm_ti.rock.criteria import MohrCoulomb
 from rsmpm_ti.rock.elasticity import Hooke
 from rsmpm_ti.rock.nonlocal_mean import Local, Nonlocal
 from rsmpm_ti.rock.rock import Rock
-from rsmpm_ti.rock.smeared_crack import FRESH, Directional
+from rsmpm_ti.rock.smeared_crack import Directional
 from rsmpm_ti.rock.softening import Brittle, LinearSoftening
 from rsmpm_ti.rock.viscosity import NoViscosity
 from rsmpm_ti.solver.guard import guard
@@ -66,7 +67,7 @@ def pull(sim: ti.template(), steps: int, size: float):
             L = size * (1.0 + 0.1 * p) * ti.Matrix([[0.0, 0.0], [0.0, 1.0]])
             sim.particles.L[p] = L
             update_stress(sim, p, L, 1.0)
-            check_and_release(sim, p, 1.0, ti.cast(k + 1, ti.f64), 0)
+            check_failure(sim, p, 1.0, ti.cast(k + 1, ti.f64), 0)
 
 
 RATES = STEP * (1.0 + 0.1 * np.arange(4))
@@ -98,7 +99,7 @@ def test_brittle_particle_fails_when_it_begins_to():
 def test_ledger_is_the_sum_of_what_particles_have_lost(softening):
     sim = cell(Directional(softening=softening))
     pull(sim, 12_000, STEP)
-    lost = sim.particles.lost.to_numpy()
+    lost = sim.particles.history.dissipated.to_numpy() * sim.particles.volume.to_numpy()
     assert (lost > 0.0).all()
     assert sim.ledger.released.to_numpy().sum() == pytest.approx(lost.sum(), rel=1e-12)
     if isinstance(softening, LinearSoftening):
@@ -114,24 +115,25 @@ def test_strength_is_lost_by_the_mean_opening_and_a_particle_fails_by_its_own():
     sim = cell(Directional(softening=LinearSoftening(G_f_I=G_F, G_f_II=100.0)), Nonlocal(length=DX))
     particles, half = sim.particles, G_F / TENSILE / DX  # the strain at which half of the strength is lost
     particles.mode.fill(1)
-    particles.crack_angle.fill(0.5 * math.pi)
-    particles.widest.fill(FRESH)
-    particles.worn.fill(FRESH)
+    particles.history.crack_normal.fill(ti.Vector([0.0, 1.0]))
+    particles.history.crack_strain_max.fill(MIN_CRACK_STRAIN)
+    particles.crack_strain_max_nonlocal.fill(MIN_CRACK_STRAIN)
     pull(sim, 3000, STEP)
     assert particles.sigma.to_numpy()[:, 1] == pytest.approx(np.full(4, TENSILE), rel=1e-6)
     assert sim.events.count[None] == 0
     pull(sim, 3000, STEP)
-    opening = particles.opening.to_numpy()[:, 0]
+    opening = particles.history.crack_strain.to_numpy()[:, 0]
     assert (opening > half).all() and sim.events.count[None] == 4  # of its own, though nothing is lost yet
-    volume = particles.volume.to_numpy() * particles.J.to_numpy()
-    assert particles.lost.to_numpy() == pytest.approx(0.5 * TENSILE * opening * volume, rel=0.01)
+    J, volume = particles.J.to_numpy(), particles.volume.to_numpy()
+    assert particles.history.dissipated.to_numpy() == pytest.approx(0.5 * TENSILE * opening * J, rel=0.01)
     for mean, left in ((half, 0.5), (0.5 * half, 0.5), (3.0 * half, 0.0)):  # what is lost does not come back
-        particles.mean_opening.fill(mean)
+        particles.crack_strain_nonlocal.fill(mean)
         pull(sim, 2, STEP)
         assert particles.sigma.to_numpy()[:, 1] == pytest.approx(np.full(4, left * TENSILE), abs=1.0)
     # what had been left to give back, half of f w, is lost with the strength
-    assert particles.lost.to_numpy() == pytest.approx(TENSILE * opening * volume, rel=0.01)
-    assert sim.ledger.released.to_numpy().sum() == pytest.approx(particles.lost.to_numpy().sum(), rel=1e-12)
+    dissipated = particles.history.dissipated.to_numpy()
+    assert dissipated == pytest.approx(TENSILE * opening * J, rel=0.01)
+    assert sim.ledger.released.to_numpy().sum() == pytest.approx((dissipated * volume).sum(), rel=1e-12)
 
 
 @pytest.mark.parametrize("mode", [1, 2])

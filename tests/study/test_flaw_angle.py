@@ -169,7 +169,7 @@ def test_runs_are_named_apart_and_can_be_built(quick):
         axis = {"cube": (1.0, 0.0), "disc": (0.0, 1.0)}[specimen]  # of the platens; of the load
         assert abs(slit.direction @ axis) == pytest.approx(math.cos(math.radians(angle)))
         assert slit.rounded == (not run.settings["paper"])
-        assert scene.rock.after_failure.directional == (not run.settings["paper"])
+        assert scene.rock.after_failure.oriented == (not run.settings["paper"])
 
 
 def test_picture_draws_every_family(tmp_path):

@@ -42,9 +42,10 @@ MUTATIONS = {
     "pressure after failure from a rate": (
         [
             (
-                "failure/stress_update.py",
-                "isotropic(-rock.after_failure.pressure(bulk, particles.J[p]), sigma.n)",
-                "isotropic(ti.min((sigma[0] + sigma[1] + sigma[2]) / 3.0, 0.0), sigma.n)",
+                "rock/after_failure.py",
+                "return isotropic(-self.pressure(bulk, sim.particles.J[p]), sim.particles.sigma.n), 0.0",
+                "s = sim.particles.sigma[p]\n"
+                "        return isotropic(ti.min((s[0] + s[1] + s[2]) / 3.0, 0.0), sim.particles.sigma.n), 0.0",
             )
         ],
         "failed_cell",
@@ -52,7 +53,7 @@ MUTATIONS = {
     "crushed rock free to slip out of the plane": (
         [
             (
-                "failure/smeared_crack_stress.py",
+                "rock/crack_return.py",
                 "ti.max(ti.min(s[2], least_pressed), most_pressed)",
                 "ti.max(s[2], most_pressed)",
             )
@@ -62,12 +63,12 @@ MUTATIONS = {
     "usl in place of musl": (
         [
             ("mpm/stepper.py", '"musl": musl,', '"musl": usl,'),
-            ("fields/state.py", 'self.remap = scene.order == "musl"', "self.remap = False"),
+            ("fields/nodes.py", 'self.remap = scene.order == "musl"', "self.remap = False"),
         ],
         "vibration",
     ),
     "forgotten strength factor": (
-        [("failure/smeared_crack_stress.py", "load = extremes / sim.particles.strength[p]", "load = extremes")],
+        [("rock/criteria.py", "return extremes / strength_factor(sim, p)", "return extremes")],
         "weibull_size",
     ),
     "confined rock without stress out of the plane": (

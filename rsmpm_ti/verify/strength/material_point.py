@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 import taichi as ti
 
-from rsmpm_ti.failure.stress_update import check_and_release, update_stress
+from rsmpm_ti.failure.stress_update import check_failure, update_stress
 from rsmpm_ti.fields.state import Simulation
 from rsmpm_ti.method.shape import Linear
 from rsmpm_ti.rock.rock import Rock
@@ -48,11 +48,11 @@ def _follow(sim: ti.template(), G: ti.types.ndarray(), sigma: ti.types.ndarray()
             L = ti.Matrix([[G[p, k, 0, 0], G[p, k, 0, 1]], [G[p, k, 1, 0], G[p, k, 1, 1]]])
             particles.L[p] = L
             update_stress(sim, p, L, 1.0)
-            check_and_release(sim, p, 1.0, ti.cast(k, ti.f64), 0)
+            check_failure(sim, p, 1.0, ti.cast(k, ti.f64), 0)
             for component in ti.static(range(4)):
                 sigma[p, k, component] = particles.sigma[p][component]
             rest[p, k, 0] = particles.mode[p]
-            rest[p, k, 1] = particles.lost[p] / particles.volume[p]
+            rest[p, k, 1] = particles.history.dissipated[p]
 
 
 def follow(rock: Rock, dx: float, G: np.ndarray) -> History:

@@ -4,13 +4,14 @@ import math
 
 import numpy as np
 import pytest
+import taichi as ti
+from nonlocal_block import DX, block, places
 from scipy.integrate import quad
 from scipy.stats import norm
-from test_smoothing import DX, block, places
 
-from rsmpm_ti.failure.nonlocal_fields import read_openings, smooth_stress
+from rsmpm_ti.failure.nonlocal_fields import read_crack_strains, smooth_stress
+from rsmpm_ti.rock.crack_return import MIN_CRACK_STRAIN
 from rsmpm_ti.rock.nonlocal_mean import Nonlocal
-from rsmpm_ti.rock.smeared_crack import FRESH
 from rsmpm_ti.spec.seeding import Lattice
 
 pytestmark = pytest.mark.usefixtures("taichi_f64")
@@ -42,14 +43,14 @@ def opened(sim, angle: float, half: float) -> tuple[np.ndarray, np.ndarray]:
     away = np.abs(x @ n)
     inside, cracked = away < half, away < 1.5 * BAND
     particles = sim.particles
-    strain = np.where(inside, W / (2.0 * half), np.where(cracked, FRESH, 0.0))
-    particles.widest.from_numpy(np.stack([strain, 0.0 * strain], axis=1))
+    strain = np.where(inside, W / (2.0 * half), np.where(cracked, MIN_CRACK_STRAIN, 0.0))
+    particles.history.crack_strain_max.from_numpy(np.stack([strain, 0.0 * strain], axis=1))
     particles.mode.from_numpy(cracked.astype(np.int32))
-    particles.crack_angle.fill(math.radians(angle))
-    particles.mean_opening.fill(0.0)
+    particles.history.crack_normal.fill(ti.Vector(n))
+    particles.crack_strain_nonlocal.fill(0.0)
     smooth_stress(sim)
-    read_openings(sim)
-    found = particles.mean_opening.to_numpy()
+    read_crack_strains(sim)
+    found = particles.crack_strain_nonlocal.to_numpy()
     assert (found[~cracked] == 0.0).all()
     free = cracked & (np.abs(x).max(axis=1) < 0.5 * CELLS * DX - 8.0 * DX)
     return found[free], away[free]
@@ -92,7 +93,7 @@ def test_crack_that_ends_at_a_free_face_opens_there_as_inside():
     sim = block(CELLS, length=2.0 * DX)
     x = places(sim)
     opened(sim, 0.0, 0.5 * BAND)
-    strain = sim.particles.mean_opening.to_numpy()
+    strain = sim.particles.crack_strain_nonlocal.to_numpy()
     near = np.abs(x[:, 0] - 0.5 * CELLS * DX) < 0.5 * BAND
     edge, inside = near & (x[:, 1] < DX), near & (np.abs(x[:, 1] - 0.5 * CELLS * DX) < 2.0 * DX)
     assert strain[edge].mean() == pytest.approx(strain[inside].mean(), rel=0.01)
@@ -106,9 +107,9 @@ def test_lonely_cracked_particle_keeps_nearly_all_of_its_strength():
     mode, widest = np.zeros(particles.count, dtype=np.int32), np.zeros((particles.count, 2))
     mode[middle], widest[middle, 0] = 1, W / BAND
     particles.mode.from_numpy(mode)
-    particles.widest.from_numpy(widest)
+    particles.history.crack_strain_max.from_numpy(widest)
     smooth_stress(sim)
-    read_openings(sim)
+    read_crack_strains(sim)
     # V/(2 pi l^2) of its strain in a mean, over what is left of a band in its middle
     share = 0.25 / (2.0 * math.pi) / Nonlocal(length=DX).band_share(BAND)
-    assert particles.mean_opening.to_numpy()[middle] * BAND / W == pytest.approx(share, rel=0.1)
+    assert particles.crack_strain_nonlocal.to_numpy()[middle] * BAND / W == pytest.approx(share, rel=0.1)
