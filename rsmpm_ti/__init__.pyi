@@ -58,8 +58,16 @@ from .spec.scene import Scene as Scene
 from .spec.scene import Schedule as Schedule
 from .spec.seeding import Jittered as Jittered
 from .spec.seeding import Lattice as Lattice
+from .units import Acceleration as Acceleration
+from .units import Angle as Angle
+from .units import Density as Density
+from .units import FractureEnergy as FractureEnergy
 from .units import GPa as GPa
+from .units import Length as Length
 from .units import MPa as MPa
+from .units import Pressure as Pressure
+from .units import Time as Time
+from .units import Velocity as Velocity
 from .units import cm as cm
 from .units import kPa as kPa
 from .units import mm as mm

@@ -1,100 +1,218 @@
-"""Whether a value is of the kind that its field is annotated with, and of a size that arithmetic bears.
+"""Scene data is checked here, once, against its annotations: constructors, recorded JSON and the command line alike.
 
-Texts of the command line, recorded JSON and Python's constructors are all held to the same annotations, here.
+A class of scene data is a frozen dataclass under `@checked(name)`. Pydantic holds its fields to their annotations when
+an object is built: `Annotated[Pressure, Positive]` is a number in pascals within a range. What concerns several fields
+stays in `__post_init__`. `refusal` turns pydantic's errors into the one line in which everything is refused.
 """
 
 import dataclasses
 import functools
 import types
 import typing
+from collections.abc import Callable
 
-from rsmpm_ti.errors import refuse
+from annotated_types import Interval, Len
+from pydantic import ConfigDict, TypeAdapter, ValidationError
+from pydantic_core import ArgsKwargs, PydanticCustomError, core_schema
 
-PHRASES = {float: "a number", int: "an integer", bool: "true or false", str: "a text", types.NoneType: "none"}
-
-OWN = ("builtins", "rsmpm_ti.rock.", "rsmpm_ti.method.", "rsmpm_ti.spec.")
-"""Where classes live that stand in for no others: Python's own, and the rooms of scene data."""
+from rsmpm_ti.errors import SceneError, refuse, shown
+from rsmpm_ti.units import Unit
 
 LEAST, LARGEST = 1e-12, 1e18
 """Of what must be positive, in SI units: far beyond any specimen, and squares and ratios of such numbers are finite."""
 
+Positive = Interval(ge=LEAST, le=LARGEST)
+NotNegative = Interval(ge=0.0, le=LARGEST)
+Finite = Interval(ge=-LARGEST, le=LARGEST)
+Seed = typing.Annotated[int, Interval(ge=0, le=2**63 - 1)]
+"""A random seed that every record can hold."""
 
-def members(wanted) -> tuple:
-    """The alternatives of an annotation: (A, B) of A | B, itself of anything else."""
-    return typing.get_args(wanted) if typing.get_origin(wanted) in (typing.Union, types.UnionType) else (wanted,)
+STRICT = ConfigDict(strict=True, extra="forbid", allow_inf_nan=False)
+"""No text is a number, no unknown keyword passes; an integer will do for a number, a bool will not."""
 
+KNOWN: dict[str, type] = {}
+"""Every class that a recorded scene may name: those of this package under `checked`."""
 
-def fits(value, wanted) -> bool:
-    """Whether a value is what an annotation says. An integer will do for a number, a bool will not."""
-    if len(members(wanted)) > 1:
-        return any(fits(value, kind) for kind in members(wanted)) or _stands_in(value, wanted)
-    if typing.get_origin(wanted) is tuple:
-        if not isinstance(value, tuple):
-            return False
-        kinds = entry_kinds(wanted, len(value))
-        return len(kinds) == len(value) and all(map(fits, value, kinds))
-    if wanted in (int, float) and isinstance(value, int):
-        return not isinstance(value, bool) and (wanted is int or value.bit_length() < 1000)
-    return isinstance(value, wanted) or _stands_in(value, wanted)
+OWN = ("rsmpm_ti.rock.", "rsmpm_ti.method.", "rsmpm_ti.spec.")
+"""Rooms of scene data: their classes stand in for no others."""
 
+Kind = typing.TypeVar("Kind")
 
-def _stands_in(value, wanted) -> bool:
-    """Whether an object of a class from outside, as a scene file may bring, has what all alternatives have in common.
-
-    A strategy of this package never stands in for one of another family.
-    """
-    families = [kind for kind in members(wanted) if dataclasses.is_dataclass(kind)]
-    if not families or isinstance(value, type) or type(value).__module__.startswith(OWN):
-        return False
-    public = (frozenset(name for name in dir(kind) if not name.startswith("_")) for kind in families)
-    return all(hasattr(value, name) for name in frozenset.intersection(*public))
+WORDS = {float: "a number", int: "an integer", bool: "true or false", str: "a text", types.NoneType: "none"}
 
 
-def entry_kinds(wanted, length: int) -> tuple:
-    """The annotations of a tuple's entries, `length` of them where tuple[A, ...] leaves that open."""
-    kinds = next((typing.get_args(kind) for kind in members(wanted) if typing.get_origin(kind) is tuple), (object, ...))
-    return kinds[:1] * length if kinds[-1] is Ellipsis else kinds
+@dataclasses.dataclass(frozen=True)
+class Remedy:
+    """In the annotation of a field: how its refusal ends, after the semicolon."""
+
+    text: str
 
 
-def phrase(wanted) -> str:
-    """What a user is told to give: 'Lattice or Jittered', 'a number or none', '2 numbers separated by commas'."""
-    if len(members(wanted)) > 1:
-        *most, last = map(phrase, members(wanted))
-        return f"{', '.join(most)} or {last}"
-    if typing.get_origin(wanted) is tuple:
-        kinds = typing.get_args(wanted)
-        if kinds[0] is not float:
-            return f"a list of {phrase(kinds[0])}"
-        return f"{'' if kinds[-1] is Ellipsis else f'{len(kinds)} '}numbers separated by commas"
-    return PHRASES.get(wanted) or wanted.__name__
+def checked(owner: str) -> Callable[[type[Kind]], type[Kind]]:
+    """Decorator of a keyword-only dataclass: its objects are checked when they are built. `owner` stands before the
+    dot in refusals."""
+
+    def decorate(kind):
+        @functools.wraps(kind.__init__)
+        def __init__(self, **values):
+            try:
+                adapter(kind).validator.validate_python(ArgsKwargs((), values), self_instance=self)
+            except ValidationError as error:
+                raise refusal(owner, kind, values, error) from None
+
+        kind.__init__ = __init__
+        kind.__pydantic_config__ = STRICT
+        kind.__get_pydantic_core_schema__ = classmethod(_schema_with_type)
+        kind.__get_pydantic_json_schema__ = classmethod(_json_schema_with_type)
+        if kind.__module__.startswith(OWN):
+            KNOWN[kind.__name__] = kind
+        return kind
+
+    return decorate
+
+
+adapter = functools.cache(TypeAdapter)
+"""Of a class, made on first use: schemas of classes that a scene does not use are never built."""
+
+
+def _schema_with_type(kind: type, source, handler):
+    """Pydantic's schema of a class, which also reads what `to_plain` writes: a dict that names the class as "type"."""
+
+    def fields_of(value):
+        if not isinstance(value, dict):
+            return value
+        if value.get("type") != kind.__name__:
+            raise PydanticCustomError("other_type", "another type")
+        return {key: field for key, field in value.items() if key != "type"}
+
+    schema = dict(handler.resolve_ref_schema(handler(source)))
+    schema["strict"] = False  # of a dataclass: its fields stay strict, but a dict may stand for it
+    # the name under which other schemas refer to the class is given to the whole, so that they too read "type"
+    return core_schema.no_info_before_validator_function(fields_of, schema, ref=schema.pop("ref"))
+
+
+def _json_schema_with_type(kind: type, schema, handler) -> dict:
+    described = handler(schema)
+    inner = handler.resolve_ref_schema(described)
+    inner["properties"] = {"type": {"const": kind.__name__}, **inner.get("properties", {})}
+    inner["required"] = ["type", *inner.get("required", [])]
+    for name, field in inner["properties"].items():
+        if dataclasses.is_dataclass(getattr(kind, name, None)):  # a default, which pydantic writes without its class
+            field["default"]["type"] = type(getattr(kind, name)).__name__
+    return described
+
+
+class ByType:
+    """In the annotation of a field: its class is chosen by the object's, in JSON by "type". An object of a class from
+    outside, as a scene file may bring, will do if it has what all alternatives have in common."""
+
+    @staticmethod
+    def __get_pydantic_core_schema__(source, handler):
+        kinds = {kind.__name__: kind for kind in members(source)}
+        names = frozenset.intersection(*(frozenset(n for n in dir(k) if n[0] != "_") for k in kinds.values()))
+
+        def stands_in(value, inner):
+            own = isinstance(value, type) or type(value).__module__.startswith((*OWN, "builtins"))
+            return value if not own and all(hasattr(value, name) for name in names) else inner(value)
+
+        def name_of(value):
+            return value.get("type") if isinstance(value, dict) else type(value).__name__
+
+        choices = {name: handler.generate_schema(kind) for name, kind in kinds.items()}
+        return core_schema.no_info_wrap_validator_function(stands_in, core_schema.tagged_union_schema(choices, name_of))
 
 
 @functools.cache
-def _annotations(kind: type) -> dict:
-    return typing.get_type_hints(kind)
+def annotations(kind: type) -> dict:
+    """Field -> annotation, with its range, unit and remedy."""
+    return typing.get_type_hints(kind, include_extras=True)
 
 
-def check_kinds(owner: str, data) -> None:
-    """Raises SceneError for a field of a dataclass whose value is not of its kind; `owner` names the dataclass."""
-    for field in dataclasses.fields(data):
-        value, wanted = getattr(data, field.name), _annotations(type(data))[field.name]
-        if not fits(value, wanted):
-            raise refuse(f"{owner}.{field.name}", value, phrase(wanted))
+def refusal(owner: str, kind: type, values, error: ValidationError) -> SceneError:
+    """The first of pydantic's errors in our one line, an unknown keyword before all others: it is often why one is
+    missing. `values`: what was to become an object of a class."""
+    problems = error.errors(include_url=False)
+    first = next((problem for problem in problems if problem["type"] == UNKNOWN), problems[0])
+    place, field, wanted, value = owner, (owner, values), kind, values
+    for step in first["loc"]:  # names, indices, and the alternatives that pydantic tried, which are no place
+        if isinstance(value, dict) and step in annotations(kind):
+            place, wanted, value = f"{place}.{step}", annotations(kind)[step], value.get(step)
+            field = (place, value)
+        elif isinstance(step, int) and isinstance(value, tuple) and step < len(value):
+            place, value = f"{place}[{step}]", value[step]  # of numbers the whole tuple is shown: `field` stays
+        if isinstance(value, dict):
+            kind = KNOWN.get(str(value.get("type")), kind)
+    last = first["loc"][-1] if first["loc"] else None
+    alike = [
+        str(p["loc"][-1])
+        for p in problems
+        if p["type"] == first["type"] and p["loc"][:-1] == first["loc"][:-1] != p["loc"]
+    ]
+    if first["type"] == UNKNOWN:
+        names = sorted(annotations(kind))
+        return SceneError(f"{place}: {kind.__name__} has no field {shown(sorted(alike))}; it has {names}")
+    if first["type"] == MISSING and isinstance(last, str):
+        return SceneError(f"{place.removesuffix(f'.{last}')}: {kind.__name__} needs {', '.join(alike)}")
+    if first["type"] != BY_HAND:
+        return refuse(*field, phrase(wanted), remedy(wanted))
+    cause = first["ctx"]["error"]
+    if not isinstance(cause, SceneError):
+        return SceneError(f"{place}: {kind.__name__} cannot be built: {cause}")
+    return SceneError(f"{place}: {cause}") if first["loc"] else cause
 
 
-def check_positive(name: str, value: float, what: str, least: float = LEAST, most: float = LARGEST) -> None:
-    """Raises SceneError unless least <= value <= most; `what` says what the number is, with its unit."""
-    if not least <= value <= most:
-        raise refuse(name, value, f"a positive finite {what}, in [{least:g}, {most:g}]")
+UNKNOWN, MISSING, BY_HAND = "unexpected_keyword_argument", "missing", "value_error"
+"""Kinds of pydantic's errors that are no wrong value of a field; the last was raised in a `__post_init__`."""
 
 
-def check_size(name: str, values: tuple[float, ...], what: str, most: float = LARGEST) -> None:
-    """Raises SceneError unless every value, which may have either sign, is at most `most`."""
-    if not all(abs(value) <= most for value in values):
-        raise refuse(name, values if len(values) > 1 else values[0], f"{what}, finite and of size at most {most:g}")
+def members(wanted) -> tuple:
+    """The alternatives of an annotation: (A, B) of A | B, itself of anything else; without what is said about them."""
+    while typing.get_origin(wanted) is typing.Annotated:
+        wanted = wanted.__origin__
+    return typing.get_args(wanted) if typing.get_origin(wanted) in (typing.Union, types.UnionType) else (wanted,)
 
 
-def check_seed(name: str, value: int) -> None:
-    """Raises SceneError unless a random seed is one that every record can hold."""
-    if not 0 <= value < 2**63:
-        raise refuse(name, value, "a whole number, zero or more and below 2^63")
+def within(wanted):
+    """An annotation and all that it is made of: alternatives, entries, and what stands beside a type."""
+    yield wanted
+    for inner in typing.get_args(wanted):
+        yield from within(inner)
+
+
+def unit_of(wanted) -> Unit | None:
+    return next((part for part in within(wanted) if isinstance(part, Unit)), None)
+
+
+def remedy(wanted) -> str:
+    return next((part.text for part in within(wanted) if isinstance(part, Remedy)), "")
+
+
+def phrase(wanted) -> str:
+    """What a user is told to give: 'Lattice or Jittered', 'a number in (-1, 0.5)', '2 numbers separated by commas'."""
+    if len(members(wanted)) > 1:
+        return _either(map(phrase, members(wanted)))
+    (bare,) = members(wanted)
+    if typing.get_origin(bare) is typing.Literal:
+        return _either(map(repr, typing.get_args(bare)))
+    marks = getattr(wanted, "__metadata__", ())
+    bounds, unit, length = (next((m for m in marks if isinstance(m, kind)), None) for kind in (Interval, Unit, Len))
+    if typing.get_origin(bare) is tuple:
+        *_, last = kinds = typing.get_args(bare)
+        count = f"{length.min_length} to {length.max_length}" if length else ""
+        if float not in members(kinds[0]):
+            return f"a list of {phrase(kinds[0])}" + (f", {count} of them" if count else "")
+        size = phrase(kinds[0]).partition("number")[2]
+        return f"{count if last is Ellipsis else len(kinds)} numbers separated by commas{size}".strip()
+    word = WORDS.get(bare) or getattr(bare, "__name__", shown(bare))
+    size = f" {unit.name}" if unit else ""
+    if bounds:
+        left, low = ("[", bounds.ge) if bounds.gt is None else ("(", bounds.gt)
+        right, high = ("]", bounds.le) if bounds.lt is None else (")", bounds.lt)
+        word = word.replace("a ", "a positive ") if 0.0 < low < 1e-6 or (left, low) == ("(", 0.0) else word
+        size = f" {left}{low:g}, {high:g}{right}{size}"
+    return f"{word} in{size}" if size else word
+
+
+def _either(words) -> str:
+    *most, last = words
+    return f"{', '.join(most)} or {last}" if most else last

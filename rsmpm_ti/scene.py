@@ -10,6 +10,7 @@ from rsmpm_ti.spec.loader import available, find, keywords_of, load_scene, scene
 from rsmpm_ti.spec.mass_scaling import estimate
 from rsmpm_ti.spec.scene import Scene
 from rsmpm_ti.spec.scene_checks import BYTES_PER_NODE, BYTES_PER_PARTICLE
+from rsmpm_ti.spec.scene_json import schema
 
 QUICK_FRAMES, QUICK_ROWS = 10, 250
 """Frames and history rows of a --quick run: painting and looking would otherwise take longer than solving."""
@@ -26,7 +27,7 @@ def parser() -> argparse.ArgumentParser:
     p.add_argument("scene", nargs="?", help="scene name, or path of a .py or recorded scene.json")
     p.add_argument("--out", metavar="DIR", help="output folder (default renders/<scene>)")
     p.add_argument("--set", dest="settings", action="append", default=[], metavar="NAME=VALUE",
-                   help="a keyword of the scene (flaw_angle=30) or a field of it (schedule.cfl=0.3)")  # fmt: skip
+                   help="a keyword of the scene (flaw_length=15mm) or a field of it (schedule.cfl=0.3)")  # fmt: skip
     p.add_argument("--quick", action="store_true", help="coarse grid and wider slit")
     p.add_argument("--elastic", action="store_true", help="switch failure off")
     p.add_argument("--frames", type=int, metavar="N", help="number of equally spaced frames")
@@ -40,6 +41,7 @@ def parser() -> argparse.ArgumentParser:
     p.add_argument("--resume", action="store_true", help="go on from the checkpoint in the output folder")
     p.add_argument("--checkpoint-every", type=float, default=60.0, metavar="S", help="seconds between checkpoints")
     p.add_argument("--list", action="store_true", help="list the scenes and their keywords")
+    p.add_argument("--schema", action="store_true", help="print the JSON schema of a scene.json, for editors")
     p.add_argument("--check", action="store_true", help="validate, print what would be run, and stop")
     return p
 
@@ -119,6 +121,9 @@ def main(arguments: list[str] | None = None) -> int:
     try:
         if options.list:
             print(list_scenes())
+            return 0
+        if options.schema:
+            print(schema())
             return 0
         if not options.scene:
             raise SceneError(f"name a scene: {', '.join(available())} (or use --list)")

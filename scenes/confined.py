@@ -4,19 +4,19 @@ Pressure keeps tension cracks shut, and splitting gives way to faulting: Horii &
 Soc. A 319:337.
 """
 
-from rsmpm_ti import Jittered, MPa, Scene, Slit, lab_rock, mm, uniaxial_test
+from rsmpm_ti import Angle, Jittered, Length, MPa, Pressure, Scene, Slit, lab_rock, mm, uniaxial_test
 
 QUICK = {"dx": 1.0 * mm}
 
 
 def scene(
     *,
-    confinement: float = 2.0 * MPa,
-    flaw_angle: float = 45.0,
-    flaw_length: float = 15.0 * mm,
-    flaw_width: float = 3.0 * mm,
-    length: float = 1.0 * mm,
-    dx: float = 0.5 * mm,
+    confinement: Pressure = 2.0 * MPa,
+    flaw_angle: Angle = 45.0,
+    flaw_length: Length = 15.0 * mm,
+    flaw_width: Length = 3.0 * mm,
+    length: Length = 1.0 * mm,
+    dx: Length = 0.5 * mm,
     seed: int = 1,
     strain_end: float = 1.0e-3,
     time_scale: float | str = 16.0,

@@ -1,16 +1,16 @@
 """The paper's first example: a 50 x 100 mm specimen with an inclined flaw under uniaxial compression (sec. 4.1)."""
 
-from rsmpm_ti import GPa, Hooke, Jittered, MohrCoulomb, MPa, Rock, Scene, Slit, mm, uniaxial_test
+from rsmpm_ti import Angle, GPa, Hooke, Jittered, Length, MohrCoulomb, MPa, Rock, Scene, Slit, mm, uniaxial_test
 
 QUICK = {"dx": 1.0 * mm, "flaw_width": 3.0 * mm, "time_scale": 16.0}
 
 
 def scene(
     *,
-    flaw_angle: float = 45.0,
-    flaw_length: float = 15.0 * mm,
-    flaw_width: float = 1.5 * mm,
-    dx: float = 0.5 * mm,
+    flaw_angle: Angle = 45.0,
+    flaw_length: Length = 15.0 * mm,
+    flaw_width: Length = 1.5 * mm,
+    dx: Length = 0.5 * mm,
     strain_end: float = 2.5e-4,
     time_scale: float | str = 5.0,
 ) -> Scene:

@@ -4,21 +4,21 @@ Wing cracks in tension come first, then shear cracks from the flaw's ends at the
 come from: `rsmpm_ti/rock/presets.py`.
 """
 
-from rsmpm_ti import Jittered, MPa, Output, Scene, Slit, lab_rock, mm, uniaxial_test
+from rsmpm_ti import Angle, FractureEnergy, Jittered, Length, MPa, Output, Scene, Slit, lab_rock, mm, uniaxial_test
 
 QUICK = {"dx": 1.0 * mm}
 
 
 def scene(
     *,
-    flaw_angle: float = 45.0,
-    flaw_length: float = 15.0 * mm,
-    flaw_width: float = 3.0 * mm,
-    G_f_I: float = 5.0,
-    G_f_II: float = 24.0,
-    residual_friction_angle: float = 30.0,
-    length: float = 1.0 * mm,
-    dx: float = 0.5 * mm,
+    flaw_angle: Angle = 45.0,
+    flaw_length: Length = 15.0 * mm,
+    flaw_width: Length = 3.0 * mm,
+    G_f_I: FractureEnergy = 5.0,
+    G_f_II: FractureEnergy = 24.0,
+    residual_friction_angle: Angle = 30.0,
+    length: Length = 1.0 * mm,
+    dx: Length = 0.5 * mm,
     seed: int = 1,
     strain_end: float = 8.0e-4,
     time_scale: float | str = 16.0,

@@ -1,17 +1,17 @@
 """The paper's second example: a Brazilian disc of 100 mm with a central flaw along the load line (sec. 4.2)."""
 
-from rsmpm_ti import Gimp, GPa, Hooke, Jittered, MohrCoulomb, MPa, Rock, Scene, Slit, brazilian_test, mm
+from rsmpm_ti import Angle, Gimp, GPa, Hooke, Jittered, Length, MohrCoulomb, MPa, Rock, Scene, Slit, brazilian_test, mm
 
 QUICK = {"dx": 1.0 * mm, "flaw_width": 2.0 * mm, "time_scale": 16.0}
 
 
 def scene(
     *,
-    flaw_angle: float = 90.0,
-    flaw_length: float = 30.0 * mm,
-    flaw_width: float = 1.0 * mm,
-    arc: float = 90.0,  # half-angle of the loaded arc [degrees]; 90: every node in touch with the platen row
-    dx: float = 0.5 * mm,
+    flaw_angle: Angle = 90.0,
+    flaw_length: Length = 30.0 * mm,
+    flaw_width: Length = 1.0 * mm,
+    arc: Angle = 90.0,  # half-angle of the loaded arc [degrees]; 90: every node in touch with the platen row
+    dx: Length = 0.5 * mm,
     strain_end: float = 1.1e-4,
     time_scale: float = 8.0,
 ) -> Scene:

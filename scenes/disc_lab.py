@@ -1,17 +1,17 @@
 """A Brazilian disc with an inclined central flaw in rock of the laboratory: wing cracks leave its tips for the load."""
 
-from rsmpm_ti import Jittered, MPa, Output, Scene, Slit, brazilian_test, lab_rock, mm
+from rsmpm_ti import Angle, Jittered, Length, MPa, Output, Scene, Slit, brazilian_test, lab_rock, mm
 
 QUICK = {"dx": 1.0 * mm}
 
 
 def scene(
     *,
-    flaw_angle: float = 45.0,
-    flaw_length: float = 30.0 * mm,
-    flaw_width: float = 3.0 * mm,
-    arc: float = 90.0,  # half-angle of the loaded arc [degrees]; 90: every node in touch with the platen row
-    dx: float = 0.5 * mm,
+    flaw_angle: Angle = 45.0,
+    flaw_length: Length = 30.0 * mm,
+    flaw_width: Length = 3.0 * mm,
+    arc: Angle = 90.0,  # half-angle of the loaded arc [degrees]; 90: every node in touch with the platen row
+    dx: Length = 0.5 * mm,
     seed: int = 1,
     strain_end: float = 3.0e-4,
     time_scale: float = 16.0,

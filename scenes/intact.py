@@ -2,12 +2,12 @@
 
 import math
 
-from rsmpm_ti import GPa, Hooke, MohrCoulomb, MPa, Rock, Scene, mm, uniaxial_test
+from rsmpm_ti import GPa, Hooke, Length, MohrCoulomb, MPa, Rock, Scene, mm, uniaxial_test
 
 QUICK = {"dx": 1.0 * mm}
 
 
-def scene(*, dx: float = 0.5 * mm, strain_end: float = 1.6e-3, time_scale: float | str = 10.0) -> Scene:
+def scene(*, dx: Length = 0.5 * mm, strain_end: float = 1.6e-3, time_scale: float | str = 10.0) -> Scene:
     rock = Rock(
         density=2600.0,
         elasticity=Hooke(E=17.0 * GPa, nu=0.14),

@@ -3,7 +3,7 @@
 import math
 from dataclasses import replace
 
-from rsmpm_ti import Jittered, Scene, Weibull, lab_rock, mm, uniaxial_test
+from rsmpm_ti import Jittered, Length, Scene, Weibull, lab_rock, mm, uniaxial_test
 
 QUICK = {"dx": 1.0 * mm, "time_scale": 20.0}
 
@@ -12,8 +12,8 @@ def scene(
     *,
     weibull_modulus: float = 6.0,
     seed: int = 1,
-    correlation_length: float = 2.0 * mm,
-    dx: float = 0.5 * mm,
+    correlation_length: Length = 2.0 * mm,
+    dx: Length = 0.5 * mm,
     strain_end: float = 1.2e-3,
     time_scale: float | str = 10.0,
 ) -> Scene:

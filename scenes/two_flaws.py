@@ -7,19 +7,19 @@ line of the other; 90: the inner tips face each other; more: the flaws overlap; 
 
 import math
 
-from rsmpm_ti import Jittered, MPa, Output, Scene, Slit, lab_rock, mm, uniaxial_test
+from rsmpm_ti import Angle, Jittered, Length, MPa, Output, Scene, Slit, lab_rock, mm, uniaxial_test
 
 QUICK = {"dx": 1.0 * mm}
 
 
 def scene(
     *,
-    flaw_angle: float = 45.0,
-    bridging_angle: float = 90.0,
-    ligament: float = 12.0 * mm,
-    flaw_length: float = 12.0 * mm,
-    flaw_width: float = 3.0 * mm,
-    dx: float = 0.5 * mm,
+    flaw_angle: Angle = 45.0,
+    bridging_angle: Angle = 90.0,
+    ligament: Length = 12.0 * mm,
+    flaw_length: Length = 12.0 * mm,
+    flaw_width: Length = 3.0 * mm,
+    dx: Length = 0.5 * mm,
     seed: int = 1,
     strain_end: float = 9.0e-4,
     time_scale: float | str = 16.0,

@@ -14,6 +14,7 @@ from PIL import Image
 from rsmpm_ti import __version__, load_scene, simulate
 from rsmpm_ti.__main__ import COMMANDS
 from rsmpm_ti.cases.running import run_case
+from rsmpm_ti.errors import SceneError
 from rsmpm_ti.scene import build, parser
 from rsmpm_ti.spec.loader import available
 
@@ -269,12 +270,20 @@ def recipe(*headings: str) -> str:
 
 TOGETHER = ("Shape function", "Transfer", "Criterion", "Boundary", "Region", "Scene")
 
-APART = ("Law after failure", "Observer", "History column", "Load cell", "Verification case")
+APART = ("Law after failure", "Observer", "History column", "Load cell", "Verification case", "A field of scene data")
 
 
 def test_every_recipe_is_run():
     assert len(blocks("docs/extending.md")) == len(TOGETHER) + len(APART)
     assert all(recipe(heading) for heading in TOGETHER + APART)
+
+
+def test_recipe_of_a_field_refuses_what_its_annotation_does_not_allow(folder):
+    (folder / "isotropic.py").write_text(recipe("A field of scene data"), encoding="utf-8")
+    kind = runpy.run_path("isotropic.py")["Isotropic"]
+    assert kind(E=17e9, nu=0.14).nu == 0.14
+    with pytest.raises(SceneError, match=r"^elasticity\.nu = 0\.5 is refused: it must be a number in .*; at 0\.5"):
+        kind(E=17e9, nu=0.5)
 
 
 def test_recipes_make_one_scene_that_breaks(folder):

@@ -6,15 +6,17 @@ At a wall (a plane of nodes that a platen holds) `fold_at_walls` keeps that true
 """
 
 from dataclasses import dataclass
+from typing import Annotated
 
 import numpy as np
 import taichi as ti
+from annotated_types import Interval
 
-from rsmpm_ti.checks import check_kinds
-from rsmpm_ti.errors import refuse
+from rsmpm_ti.checks import Remedy, checked
 
 
 @ti.data_oriented
+@checked("shape")
 @dataclass(frozen=True, kw_only=True)
 class Linear:
     """Linear hat, support dx.  Sulsky, Chen & Schreyer (1994), eq. 20."""
@@ -40,6 +42,7 @@ class Linear:
 
 
 @ti.data_oriented
+@checked("shape")
 @dataclass(frozen=True, kw_only=True)
 class Gimp:
     """uGIMP: the hat averaged over a particle of fixed half-width [cells].  Bardenhagen & Kober (2004), eq. 35.
@@ -47,18 +50,13 @@ class Gimp:
     Good value: 1/(2 x particles per axis), so that particle domains tile the body.
     """
 
-    half_width: float = 0.25
+    half_width: Annotated[float, Interval(gt=0.0, le=0.5), Remedy("use 0.25 for 2 particles per axis")] = 0.25
 
     width = 3
     shift = 0.5
     stable_cfl = 1.65
     affine_cfl = 0.85
     crack_band = 1.5
-
-    def __post_init__(self):
-        check_kinds("shape", self)
-        if not 0.0 < self.half_width <= 0.5:
-            raise refuse("shape.half_width", self.half_width, "in (0, 0.5] cells", "use 0.25 for 2 particles per axis")
 
     @ti.func
     def weights(self, r):
@@ -93,6 +91,7 @@ class Gimp:
 
 
 @ti.data_oriented
+@checked("shape")
 @dataclass(frozen=True, kw_only=True)
 class QuadraticBSpline:
     """Quadratic B-spline, support 1.5 dx.  Steffen, Kirby & Berzins (2008), eq. 14."""

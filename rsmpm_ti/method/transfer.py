@@ -1,14 +1,16 @@
 """How velocity goes from particles to nodes and back. `v_pic` is sum w_ip v_i, `dv` is sum w_ip (v_i - v_i_old)."""
 
 from dataclasses import dataclass
+from typing import Annotated
 
 import taichi as ti
+from annotated_types import Interval
 
-from rsmpm_ti.checks import check_kinds
-from rsmpm_ti.errors import refuse
+from rsmpm_ti.checks import Remedy, checked
 
 
 @ti.data_oriented
+@checked("transfer")
 @dataclass(frozen=True, kw_only=True)
 class PicFlip:
     """v_p <- v_pic + flip (v_p + dv - v_pic).  flip = 1 FLIP (no damping), flip = 0 PIC.
@@ -16,14 +18,9 @@ class PicFlip:
     Zhu & Bridson (2005), sec. 4; Brackbill & Ruppel (1986) for FLIP.
     """
 
-    flip: float = 1.0
+    flip: Annotated[float, Interval(ge=0.0, le=1.0), Remedy("1 is FLIP (no damping), 0 is PIC")] = 1.0
 
     affine = False  # no velocity gradient is carried by the particle
-
-    def __post_init__(self):
-        check_kinds("transfer", self)
-        if not 0.0 <= self.flip <= 1.0:
-            raise refuse("transfer.flip", self.flip, "in [0, 1]", "1 is FLIP (no damping), 0 is PIC")
 
     @ti.func
     def to_particle(self, v_p, v_pic, dv):
@@ -31,6 +28,7 @@ class PicFlip:
 
 
 @ti.data_oriented
+@checked("transfer")
 @dataclass(frozen=True, kw_only=True)
 class Apic:
     """v_p <- v_pic with the affine matrix C = B D^-1.  Jiang, Schroeder, Selle, Teran & Stomakhin (2015), eq. 8-10.

@@ -5,13 +5,14 @@ answer asks; nobody asks which law it is. A new law is a class with `AfterFailur
 """
 
 from dataclasses import dataclass
+from typing import Annotated
 
 import numpy as np
 import taichi as ti
 
-from rsmpm_ti.checks import LARGEST, check_kinds
-from rsmpm_ti.errors import refuse
+from rsmpm_ti.checks import NotNegative, checked
 from rsmpm_ti.rock.tensors import isotropic
+from rsmpm_ti.units import Pressure
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -128,6 +129,7 @@ class Fluid(AfterFailure):
 
 
 @ti.data_oriented
+@checked("after_failure")
 @dataclass(frozen=True, kw_only=True)
 class CompressionOnly(Fluid):
     """Choice 1 of the paper, sec. 3.2: a failed particle is a fluid without tension, p = max(K (1 - J), 0)."""
@@ -138,6 +140,7 @@ class CompressionOnly(Fluid):
 
 
 @ti.data_oriented
+@checked("after_failure")
 @dataclass(frozen=True, kw_only=True)
 class Void(Fluid):
     """Choice 2 of the paper, sec. 3.2: a failed particle carries nothing; only its mass stays."""
@@ -148,18 +151,13 @@ class Void(Fluid):
 
 
 @ti.data_oriented
+@checked("after_failure")
 @dataclass(frozen=True, kw_only=True)
 class Clipped(Fluid):
     """Choice 3 of the paper, sec. 3.2: p = clip(K (1 - J), -tension_limit, compression_limit), both limits [Pa]."""
 
-    tension_limit: float
-    compression_limit: float
-
-    def __post_init__(self):
-        check_kinds("after_failure", self)
-        for name in ("tension_limit", "compression_limit"):
-            if not 0.0 <= getattr(self, name) <= LARGEST:
-                raise refuse(f"after_failure.{name}", getattr(self, name), f"in [0, {LARGEST:g}] Pa")
+    tension_limit: Annotated[Pressure, NotNegative]
+    compression_limit: Annotated[Pressure, NotNegative]
 
     @ti.func
     def pressure(self, bulk, J):

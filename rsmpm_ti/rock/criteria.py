@@ -2,14 +2,18 @@
 
 import math
 from dataclasses import dataclass
+from typing import Annotated
 
 import taichi as ti
+from annotated_types import Interval
 
-from rsmpm_ti.checks import check_kinds, check_positive
+from rsmpm_ti.checks import Positive, Remedy, checked
 from rsmpm_ti.errors import refuse
+from rsmpm_ti.units import Angle, Pressure
 
 
 @ti.data_oriented
+@checked("criterion")
 @dataclass(frozen=True, kw_only=True)
 class MohrCoulomb:
     """Tension cut-off first, then Mohr-Coulomb, on the extremes of all three principal stresses (paper eq. 11, 12).
@@ -18,18 +22,13 @@ class MohrCoulomb:
     cohesion, tensile_strength [Pa]; friction_angle [degrees].
     """
 
-    cohesion: float
-    friction_angle: float
-    tensile_strength: float
+    cohesion: Annotated[Pressure, Positive]
+    friction_angle: Annotated[Angle, Interval(ge=0.0, le=89.0), Remedy("at 90 nothing breaks")]
+    tensile_strength: Annotated[Pressure, Positive]
 
     breaks = True
 
     def __post_init__(self):
-        check_kinds("criterion", self)
-        check_positive("criterion.cohesion", self.cohesion, "stress in Pa")
-        check_positive("criterion.tensile_strength", self.tensile_strength, "stress in Pa")
-        if not 0.0 <= self.friction_angle <= 89.0:
-            raise refuse("criterion.friction_angle", self.friction_angle, "in [0, 89] degrees", "at 90 nothing breaks")
         if self.tensile_strength > self.apex:
             raise refuse(
                 "criterion.tensile_strength",
@@ -105,6 +104,7 @@ def load_factors(sim: ti.template(), p, extremes):
 
 
 @ti.data_oriented
+@checked("criterion")
 @dataclass(frozen=True, kw_only=True)
 class Unbreakable:
     """No failure: for verification against elastic solutions (`--elastic`)."""

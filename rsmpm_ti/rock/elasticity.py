@@ -1,15 +1,18 @@
 """Elasticity of rock."""
 
 from dataclasses import dataclass
+from typing import Annotated
 
 import taichi as ti
+from annotated_types import Interval
 
-from rsmpm_ti.checks import check_kinds, check_positive
-from rsmpm_ti.errors import refuse
+from rsmpm_ti.checks import Positive, Remedy, checked
 from rsmpm_ti.rock.tensors import double_contraction, hughes_winget, isotropic, trace
+from rsmpm_ti.units import Pressure
 
 
 @ti.data_oriented
+@checked("elasticity")
 @dataclass(frozen=True, kw_only=True)
 class Hooke:
     """Isotropic linear elasticity with objective rotation.  E [Pa], nu [-].
@@ -21,15 +24,9 @@ class Hooke:
     stressed particle stay constant, where the explicit Jaumann form grows them by exp(8 pi^2/n) per turn of n steps.
     """
 
-    E: float
-    nu: float
+    E: Annotated[Pressure, Positive]
+    nu: Annotated[float, Interval(gt=-1.0, lt=0.5), Remedy("at 0.5 the wave speed is infinite; use 0.499")]
     plane_stress: bool = False
-
-    def __post_init__(self):
-        check_kinds("elasticity", self)
-        check_positive("elasticity.E", self.E, "stiffness in Pa")
-        if not -1.0 < self.nu < 0.5:
-            raise refuse("elasticity.nu", self.nu, "in (-1, 0.5)", "at 0.5 the wave speed is infinite; use 0.499")
 
     @property
     def lam(self) -> float:

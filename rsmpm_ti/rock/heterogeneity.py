@@ -6,11 +6,14 @@ k times as large. Elastic stress therefore is that of the uniform rock until the
 
 import math
 from dataclasses import dataclass
+from typing import Annotated
 
 import numpy as np
+from annotated_types import Interval
 
-from rsmpm_ti.checks import check_kinds, check_seed
+from rsmpm_ti.checks import Remedy, Seed, checked
 from rsmpm_ti.errors import refuse
+from rsmpm_ti.units import AreaOrVolume, Length
 
 MODES = 1000
 """Random waves of a correlated field. Over seeds its covariance is exact; within one seed points far apart keep a
@@ -23,6 +26,7 @@ ROWS = 256
 """Particles whose waves are summed at a time: 2 MB, which a cache holds; twice as fast as 32 MB."""
 
 
+@checked("heterogeneity")
 @dataclass(frozen=True, kw_only=True)
 class Uniform:
     """The same strength everywhere: particles then hold no field for it."""
@@ -34,6 +38,7 @@ class Uniform:
         return np.ones(len(x))
 
 
+@checked("heterogeneity")
 @dataclass(frozen=True, kw_only=True)
 class Weibull:
     """Weibull strengths that know the size of the particles: k = (V_ref/V)^(1/m) (-ln(1 - U))^(1/m), U in (0, 1).
@@ -58,20 +63,14 @@ class Weibull:
     Good values: m 3 to 15; V_ref the volume on which the strength was measured with l = 0, about V_c with l > 0.
     """
 
-    shape: float
-    reference_volume: float
-    seed: int = 1
-    correlation_length: float = 0.0
+    shape: Annotated[float, Interval(ge=0.5, le=1000.0), Remedy("rock has a modulus of 3 to 15")]
+    reference_volume: Annotated[AreaOrVolume, Interval(ge=1e-18, le=1e9)]
+    seed: Seed = 1
+    correlation_length: Length = 0.0
 
     varies = True
 
     def __post_init__(self):
-        check_kinds("heterogeneity", self)
-        if not 0.5 <= self.shape <= 1000.0:
-            raise refuse("heterogeneity.shape", self.shape, "in [0.5, 1000]", "rock has a modulus of 3 to 15")
-        if not 1e-18 <= self.reference_volume <= 1e9:
-            raise refuse("heterogeneity.reference_volume", self.reference_volume, "in [1e-18, 1e9], in m^2 (m^3 in 3D)")
-        check_seed("heterogeneity.seed", self.seed)
         if not (self.correlation_length == 0.0 or 1e-9 <= self.correlation_length <= 1e9):
             raise refuse("heterogeneity.correlation_length", self.correlation_length, "0 or in [1e-9, 1e9] m")
 

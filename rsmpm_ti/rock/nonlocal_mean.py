@@ -2,18 +2,22 @@
 
 import math
 from dataclasses import dataclass
+from typing import Annotated
 
 import numpy as np
 import taichi as ti
+from annotated_types import Interval
 
-from rsmpm_ti.checks import check_kinds, check_positive
+from rsmpm_ti.checks import Positive, checked
 from rsmpm_ti.errors import refuse
+from rsmpm_ti.units import Angle, Length
 
 MAX_CELLS = 64
 """Longest length of the mean [cells]; every node then sums 450 others along each axis."""
 
 
 @ti.data_oriented
+@checked("averaging")
 @dataclass(frozen=True, kw_only=True)
 class Local:
     """Each particle's own stress and crack strain decide: what fails first then depends on cell size and edges."""
@@ -45,6 +49,7 @@ class Local:
 
 
 @ti.data_oriented
+@checked("averaging")
 @dataclass(frozen=True, kw_only=True)
 class Nonlocal:
     """The mean stress over a length of the rock decides on tension; its most overloaded particle fails first.
@@ -64,19 +69,11 @@ class Nonlocal:
     behind it.
     """
 
-    length: float
-    shade: float = 4.0
-    wedge: float = 25.0
+    length: Annotated[Length, Positive]
+    shade: Annotated[float, Interval(ge=0.0, le=100.0)] = 4.0
+    wedge: Annotated[Angle, Interval(ge=0.1, le=89.9)] = 25.0
 
     acts = True
-
-    def __post_init__(self):
-        check_kinds("averaging", self)
-        check_positive("averaging.length", self.length, "length in metres")
-        if not 0.0 <= self.shade <= 100.0:
-            raise refuse("averaging.shade", self.shade, "in [0, 100] lengths")
-        if not 0.1 <= self.wedge <= 89.9:
-            raise refuse("averaging.wedge", self.wedge, "in [0.1, 89.9] degrees")
 
     @ti.func
     def own_decides(self, sim: ti.template(), p, normal):

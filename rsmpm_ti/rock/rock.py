@@ -7,10 +7,11 @@ faces meet again.
 
 import math
 from dataclasses import dataclass
+from typing import Annotated
 
 import taichi as ti
 
-from rsmpm_ti.checks import check_kinds, check_positive
+from rsmpm_ti.checks import ByType, Positive, checked
 from rsmpm_ti.rock.after_failure import Clipped, CompressionOnly, Void
 from rsmpm_ti.rock.criteria import MohrCoulomb, Unbreakable
 from rsmpm_ti.rock.elasticity import Hooke
@@ -18,24 +19,22 @@ from rsmpm_ti.rock.heterogeneity import Uniform, Weibull
 from rsmpm_ti.rock.nonlocal_mean import Local, Nonlocal
 from rsmpm_ti.rock.smeared_crack import Directional
 from rsmpm_ti.rock.viscosity import BulkViscosity, NoViscosity
+from rsmpm_ti.units import Density
 
 
 @ti.data_oriented
+@checked("rock")
 @dataclass(frozen=True, kw_only=True)
 class Rock:
     """One rock: density [kg/m^3], the four laws it is made of, and how its strength varies from place to place."""
 
-    density: float
-    elasticity: Hooke
-    criterion: MohrCoulomb | Unbreakable
-    after_failure: CompressionOnly | Void | Clipped | Directional = CompressionOnly()
-    viscosity: BulkViscosity | NoViscosity = BulkViscosity()
-    averaging: Local | Nonlocal = Local()
-    heterogeneity: Uniform | Weibull = Uniform()
-
-    def __post_init__(self):
-        check_kinds("rock", self)
-        check_positive("rock.density", self.density, "density in kg/m^3")
+    density: Annotated[Density, Positive]
+    elasticity: Annotated[Hooke, ByType]
+    criterion: Annotated[MohrCoulomb | Unbreakable, ByType]
+    after_failure: Annotated[CompressionOnly | Void | Clipped | Directional, ByType] = CompressionOnly()
+    viscosity: Annotated[BulkViscosity | NoViscosity, ByType] = BulkViscosity()
+    averaging: Annotated[Local | Nonlocal, ByType] = Local()
+    heterogeneity: Annotated[Uniform | Weibull, ByType] = Uniform()
 
     def wave_speed(self, time_scale: float = 1.0) -> float:
         """Speed of the fastest wave, c_p unless in plane stress [m/s], with the density scaled by time_scale^2."""

@@ -11,11 +11,13 @@ where a, b, c are what the stresses would be if the cracks were closed. The stre
 
 import math
 from dataclasses import dataclass
+from typing import Annotated
 
 import numpy as np
 import taichi as ti
+from annotated_types import Interval
 
-from rsmpm_ti.checks import check_kinds
+from rsmpm_ti.checks import ByType, checked
 from rsmpm_ti.errors import refuse
 from rsmpm_ti.rock.after_failure import AfterFailure, Variable
 from rsmpm_ti.rock.crack_return import (
@@ -27,9 +29,11 @@ from rsmpm_ti.rock.crack_return import (
 )
 from rsmpm_ti.rock.criteria import strengths
 from rsmpm_ti.rock.softening import Brittle, ExponentialSoftening, LinearSoftening
+from rsmpm_ti.units import Angle
 
 
 @ti.data_oriented
+@checked("after_failure")
 @dataclass(frozen=True, kw_only=True)
 class Directional(AfterFailure):
     """Release across the crack only; residual friction in shear; the stress along the crack stays.
@@ -42,9 +46,9 @@ class Directional(AfterFailure):
     otherwise it is fixed in the rock and turns only with it.
     """
 
-    residual_friction_angle: float = 30.0
+    residual_friction_angle: Annotated[Angle, Interval(ge=0.0, le=89.0)] = 30.0
     rotating: bool = False
-    softening: Brittle | LinearSoftening | ExponentialSoftening = Brittle()
+    softening: Annotated[Brittle | LinearSoftening | ExponentialSoftening, ByType] = Brittle()
 
     history = (
         Variable(name="crack_normal", unit="1", per_axis=True, about="unit normal of the crack; turns with the rock"),
@@ -59,11 +63,6 @@ class Directional(AfterFailure):
     dimensions = (2,)
     oriented = True
     max_events = 2  # what failed in tension may fail in shear later
-
-    def __post_init__(self):
-        check_kinds("after_failure", self)
-        if not 0.0 <= self.residual_friction_angle <= 89.0:
-            raise refuse("after_failure.residual_friction_angle", self.residual_friction_angle, "in [0, 89] degrees")
 
     @property
     def softens(self) -> bool:

@@ -6,19 +6,16 @@ softening branch is scaled by h. `strength` is the value at which softening star
 """
 
 from dataclasses import dataclass
+from typing import Annotated
 
 import taichi as ti
 
-from rsmpm_ti.checks import check_kinds, check_positive
-
-
-def _check_energies(law) -> None:
-    check_kinds("softening", law)
-    for name in ("G_f_I", "G_f_II"):
-        check_positive(f"softening.{name}", getattr(law, name), "energy per area in J/m^2")
+from rsmpm_ti.checks import Positive, checked
+from rsmpm_ti.units import FractureEnergy
 
 
 @ti.data_oriented
+@checked("softening")
 @dataclass(frozen=True, kw_only=True)
 class Brittle:
     """All strength is gone at failure: no fracture energy, so results follow the cell size (the paper's assumption)."""
@@ -35,6 +32,7 @@ class Brittle:
 
 
 @ti.data_oriented
+@checked("softening")
 @dataclass(frozen=True, kw_only=True)
 class LinearSoftening:
     """Strength falls linearly with the opening: f (1 - w f/(2 G_f)); gone at w = 2 G_f/f.
@@ -42,11 +40,8 @@ class LinearSoftening:
     G_f_I: energy per crack area in tension; G_f_II: of cohesion lost in shear, friction not counted [J/m^2].
     """
 
-    G_f_I: float
-    G_f_II: float
-
-    def __post_init__(self):
-        _check_energies(self)
+    G_f_I: Annotated[FractureEnergy, Positive]
+    G_f_II: Annotated[FractureEnergy, Positive]
 
     def steepest(self, strength: float, energy: float) -> float:
         return strength**2 / (2.0 * energy)
@@ -57,6 +52,7 @@ class LinearSoftening:
 
 
 @ti.data_oriented
+@checked("softening")
 @dataclass(frozen=True, kw_only=True)
 class ExponentialSoftening:
     """Strength falls as f exp(-w f/G_f): steep first, then a long tail, as measured on concrete and rock.
@@ -64,11 +60,8 @@ class ExponentialSoftening:
     G_f_I: energy per crack area in tension; G_f_II: of cohesion lost in shear, friction not counted [J/m^2].
     """
 
-    G_f_I: float
-    G_f_II: float
-
-    def __post_init__(self):
-        _check_energies(self)
+    G_f_I: Annotated[FractureEnergy, Positive]
+    G_f_II: Annotated[FractureEnergy, Positive]
 
     def steepest(self, strength: float, energy: float) -> float:
         return strength**2 / energy

@@ -1,18 +1,20 @@
 """Artificial bulk viscosity, which smooths shocks over a few cells."""
 
 from dataclasses import dataclass
+from typing import Annotated
 
 import taichi as ti
+from annotated_types import Interval
 
-from rsmpm_ti.checks import check_kinds
-from rsmpm_ti.errors import refuse
+from rsmpm_ti.checks import checked
 from rsmpm_ti.rock.tensors import isotropic
 
-MOST_VISCOUS = 1e3
-"""Largest constant of artificial viscosity; useful ones are about 1."""
+Constant = Annotated[float, Interval(ge=0.0, le=1e3)]
+"""Of artificial viscosity; useful ones are about 1."""
 
 
 @ti.data_oriented
+@checked("viscosity")
 @dataclass(frozen=True, kw_only=True)
 class BulkViscosity:
     """q = rho L^2 c1 d^2 - c2 rho L c d in compression (d = tr grad v < 0), added as -q to the normal stresses.
@@ -20,14 +22,8 @@ class BulkViscosity:
     von Neumann & Richtmyer (1950) with Landshoff's linear term; constants as in MPM3D. c1 multiplies L^2 directly.
     """
 
-    c1: float = 1.5
-    c2: float = 0.06
-
-    def __post_init__(self):
-        check_kinds("viscosity", self)
-        for name in ("c1", "c2"):
-            if not 0.0 <= getattr(self, name) <= MOST_VISCOUS:
-                raise refuse(f"viscosity.{name}", getattr(self, name), f"in [0, {MOST_VISCOUS:g}]")
+    c1: Constant = 1.5
+    c2: Constant = 0.06
 
     acts = True
 
@@ -59,6 +55,7 @@ class BulkViscosity:
 
 
 @ti.data_oriented
+@checked("viscosity")
 @dataclass(frozen=True, kw_only=True)
 class NoViscosity:
     """No artificial viscosity: the particles then hold no field for it."""

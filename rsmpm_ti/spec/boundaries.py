@@ -4,24 +4,21 @@ A boundary holds every node on its plane and beyond it. `factor` is the start ra
 """
 
 from dataclasses import dataclass
+from typing import Annotated, Literal
 
 import taichi as ti
+from annotated_types import Interval
 
-from rsmpm_ti.checks import check_kinds, check_size
+from rsmpm_ti.checks import Finite, Remedy, checked
 from rsmpm_ti.errors import refuse
-from rsmpm_ti.spec.regions import FARTHEST
+from rsmpm_ti.spec.regions import Coordinate
+from rsmpm_ti.units import Velocity
 
 ROUGHEST = 1e3
 """Largest friction coefficient: nothing slips long before."""
 
-
-def _check_plane(owner: str, boundary) -> None:
-    check_kinds(owner, boundary)
-    if boundary.axis not in (0, 1, 2):
-        raise refuse(f"{owner}.axis", boundary.axis, "0, 1 or 2")
-    if boundary.side not in ("lower", "upper"):
-        raise refuse(f"{owner}.side", boundary.side, "'lower' or 'upper'")
-    check_size(f"{owner}.position", (boundary.position,), "a coordinate in metres", FARTHEST)
+Axis = Annotated[int, Interval(ge=0, le=2)]
+Side = Literal["lower", "upper"]
 
 
 @ti.func
@@ -32,6 +29,7 @@ def beyond(x, dx, axis: ti.template(), side: ti.template(), position):
 
 
 @ti.data_oriented
+@checked("platen")
 @dataclass(frozen=True, kw_only=True)
 class Platen:
     """A rigid plate: prescribed normal velocity `speed` [m/s], signed along +axis.
@@ -40,23 +38,17 @@ class Platen:
     interval [m] of the first lateral axis: the arc of a Brazilian test.
     """
 
-    axis: int
-    side: str
-    position: float
-    speed: float
-    friction: float = 0.0
+    axis: Axis
+    side: Side
+    position: Coordinate
+    speed: Annotated[Velocity, Finite]
+    friction: Annotated[float, Interval(ge=0.0, le=ROUGHEST), Remedy("or set bonded")] = 0.0
     bonded: bool = False
-    span: tuple[float, float] | None = None
+    span: tuple[Coordinate, Coordinate] | None = None
 
     def __post_init__(self):
-        _check_plane("platen", self)
-        check_size("platen.speed", (self.speed,), "a velocity in m/s")
-        if not 0.0 <= self.friction <= ROUGHEST:
-            raise refuse("platen.friction", self.friction, f"a coefficient in [0, {ROUGHEST:g}]", "or set bonded")
-        if self.span is not None:
-            check_size("platen.span", self.span, "a finite interval (lower, upper) in metres", FARTHEST)
-            if not self.span[0] < self.span[1]:
-                raise refuse("platen.span", self.span, "an interval with its lower end first, in metres")
+        if self.span is not None and not self.span[0] < self.span[1]:
+            raise refuse("platen.span", self.span, "an interval with its lower end first, in metres")
 
     @property
     def limited(self) -> bool:
@@ -86,18 +78,16 @@ class Platen:
 
 
 @ti.data_oriented
+@checked("wall")
 @dataclass(frozen=True, kw_only=True)
 class Wall:
     """A fixed frictionless plane: normal velocity 0."""
 
-    axis: int
-    side: str
-    position: float
+    axis: Axis
+    side: Side
+    position: Coordinate
 
     speed = 0.0
-
-    def __post_init__(self):
-        _check_plane("wall", self)
 
     @ti.func
     def holds(self, x, dx):
@@ -111,18 +101,16 @@ class Wall:
 
 
 @ti.data_oriented
+@checked("fixed")
 @dataclass(frozen=True, kw_only=True)
 class Fixed:
     """A clamped plane: velocity 0."""
 
-    axis: int
-    side: str
-    position: float
+    axis: Axis
+    side: Side
+    position: Coordinate
 
     speed = 0.0
-
-    def __post_init__(self):
-        _check_plane("fixed", self)
 
     @ti.func
     def holds(self, x, dx):

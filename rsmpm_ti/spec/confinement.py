@@ -18,18 +18,11 @@ What it means:
   stress-free volumes so much larger and a density so much smaller that volume and mass are those seeded.
 """
 
-from rsmpm_ti.checks import LARGEST
 from rsmpm_ti.errors import refuse
 from rsmpm_ti.rock.elasticity import Hooke
 
 LARGEST_SHARE = 0.1
 """Of the bulk modulus: beyond it p = K (1 - J) is no law of rock any more."""
-
-
-def check_confinement(pressure: float) -> None:
-    """Raises SceneError unless pressure [Pa] is zero or more and finite."""
-    if not 0.0 <= pressure <= LARGEST:
-        raise refuse("loading.confinement", pressure, "zero or more and finite, in Pa", "it is compression positive")
 
 
 def check_confined_rock(pressure: float, elasticity: Hooke) -> None:

@@ -3,17 +3,20 @@
 import math
 import re
 from dataclasses import dataclass, replace
+from typing import Annotated, Literal
 
 import numpy as np
 
-from rsmpm_ti.checks import check_kinds, check_positive, check_size
+from rsmpm_ti.checks import Positive, checked
 from rsmpm_ti.errors import refuse
-from rsmpm_ti.spec.boundaries import Platen
-from rsmpm_ti.spec.regions import FARTHEST
+from rsmpm_ti.spec.boundaries import Axis, Platen
+from rsmpm_ti.spec.regions import Position
+from rsmpm_ti.units import LengthOrArea
 
 GAUGE_NAME = re.compile(r"[a-z][a-z0-9_]{0,39}")
 
 
+@checked("gauge")
 @dataclass(frozen=True, kw_only=True)
 class Gauge:
     """Two points a and b of the specimen [m] whose distance is followed; lengthening is positive.
@@ -24,21 +27,15 @@ class Gauge:
     """
 
     name: str
-    a: tuple[float, ...]
-    b: tuple[float, ...]
-    reads: str = "strain"
+    a: Position
+    b: Position
+    reads: Literal["strain", "opening"] = "strain"
 
     def __post_init__(self):
-        check_kinds("gauge", self)
         if not GAUGE_NAME.fullmatch(self.name):
             raise refuse("gauge.name", self.name, "a word of at most 40 small letters, digits and _")
-        for name in ("a", "b"):
-            point = getattr(self, name)
-            if len(point) not in (2, 3) or len(point) != len(self.a):
-                raise refuse(f"gauge.{name}", point, "2 or 3 coordinates in metres, as many as gauge.a")
-            check_size(f"gauge.{name}", point, "coordinates in metres", FARTHEST)
-        if self.reads not in ("strain", "opening"):
-            raise refuse("gauge.reads", self.reads, "'strain' or 'opening'")
+        if len(self.b) != len(self.a):
+            raise refuse("gauge.b", self.b, "2 or 3 coordinates in metres, as many as gauge.a")
 
     @property
     def length(self) -> float:
@@ -70,6 +67,7 @@ class Load:
 NO_LOAD = Load(math.nan, math.nan, math.nan, math.nan)
 
 
+@checked("cell")
 @dataclass(frozen=True, kw_only=True)
 class LoadCell:
     """Which boundaries are read, along which axis, and by which width their force becomes nominal stress.
@@ -80,22 +78,17 @@ class LoadCell:
     of a beam of depth h, width = 2 h^2 / (3 L) makes it the stress of beam theory at mid-span.
     """
 
-    axis: int | None = None
+    axis: Axis | None = None
     lower: tuple[int, ...] | None = None
     upper: tuple[int, ...] | None = None
-    width: float | None = None
+    width: Annotated[LengthOrArea, Positive] | None = None
     gauges: tuple[Gauge, ...] = ()
 
     def __post_init__(self):
-        check_kinds("cell", self)
-        if self.axis not in (None, 0, 1, 2):
-            raise refuse("cell.axis", self.axis, "0, 1 or 2")
         for name in ("lower", "upper"):
             indices = getattr(self, name) or ()
             if len(set(indices)) < len(indices) or not all(index >= 0 for index in indices):
                 raise refuse(f"cell.{name}", indices, "different indices of loading.boundaries, counted from 0")
-        if self.width is not None:
-            check_positive("cell.width", self.width, "length in metres (area in 3D)")
         columns = [gauge.column for gauge in self.gauges]
         if len(set(columns)) < len(columns):
             raise refuse("cell.gauges", columns, "gauges of different names")

@@ -3,22 +3,22 @@
 import contextlib
 import dataclasses
 import difflib
-import functools
 import importlib.util
 import inspect
-import operator
 import sys
 import traceback
-import types
 import typing
 from dataclasses import replace
 from pathlib import Path
 
+from pydantic import PydanticUserError, TypeAdapter, ValidationError
+
 import rsmpm_ti
-from rsmpm_ti.checks import entry_kinds, fits, members, phrase
-from rsmpm_ti.errors import SceneError, short, shown
+from rsmpm_ti.checks import KNOWN, STRICT, annotations, members, phrase, remedy, unit_of, within
+from rsmpm_ti.errors import SceneError, refuse, short, shown
 from rsmpm_ti.spec.scene import Scene
-from rsmpm_ti.spec.scene_json import family_of, read_scene
+from rsmpm_ti.spec.scene_json import read_scene
+from rsmpm_ti.units import quantity
 
 PACKAGE = Path(rsmpm_ti.__file__).parent
 SHIPPED = PACKAGE / "scenes"
@@ -54,10 +54,10 @@ def find(name: str) -> Path:
     return scenes[name]
 
 
-def load_scene(name: str, *, quick: bool = False, settings: dict[str, str] | None = None, **overrides) -> Scene:
-    """Build a scene. `overrides` are keywords of its function; `settings` are texts as --set gives them, where a
-    dotted name reaches a field of the built Scene, and so does a field's own name that is no keyword. `quick` first
-    takes the file's QUICK keywords.
+def load_scene(name: str, *, quick: bool = False, settings: dict[str, object] | None = None, **overrides) -> Scene:
+    """Build a scene. `overrides` are keywords of its function; `settings` are texts as --set gives them ("55 GPa"), or
+    numbers, where a dotted name reaches a field of the built Scene, and so does a field's own name that is no keyword.
+    `quick` first takes the file's QUICK keywords.
 
     A .py scene is a program and is run; a .json scene is data and is not. Raises SceneError.
     """
@@ -83,14 +83,14 @@ def load_scene(name: str, *, quick: bool = False, settings: dict[str, str] | Non
 
 
 @contextlib.contextmanager
-def _naming(settings: dict[str, str]):
+def _naming(settings: dict[str, object]):
     """Says which settings led to a refusal that names none of them: a keyword becomes fields of other names."""
     try:
         yield
     except SceneError as error:
         if not settings or any(short(key) in str(error) for key in settings):
             raise
-        given = ", ".join(f"{short(key)}={short(text)}" for key, text in settings.items())
+        given = ", ".join(f"{short(key)}={short(str(text))}" for key, text in settings.items())
         raise SceneError(f"{error} (set: {given})") from None
 
 
@@ -142,7 +142,7 @@ def keywords_of(path: Path) -> dict[str, object]:
     return {k: p.default for k, p in parameters.items()}
 
 
-def _call(function, path: Path, overrides: dict, settings: dict[str, str]) -> Scene:
+def _call(function, path: Path, overrides: dict, settings: dict[str, object]) -> Scene:
     parameters = inspect.signature(function).parameters
     values = dict(overrides)
     for key in (*overrides, *settings):
@@ -171,50 +171,69 @@ def _unknown(key: str, names: list[str], owner: str, more: str = "", also=()) ->
 
 
 def _kind_of(parameter: inspect.Parameter):
-    """What a keyword takes, as an annotation: its own if that offers a choice, else by its default; a class may be any
-    of its kind."""
-    default = parameter.default
-    if isinstance(parameter.annotation, types.UnionType):
-        return parameter.annotation
+    """What a keyword takes: what its annotation says, else what its default is; a class may be any of its family."""
+    default, said = parameter.default, parameter.annotation
+    if dataclasses.is_dataclass(default):
+        return family_of(type(default))
+    if said is not inspect.Parameter.empty and not isinstance(said, str):
+        return said
     if default is None or default is inspect.Parameter.empty:
         return float | None
-    if isinstance(default, tuple):
-        return tuple[float, ...]
-    if dataclasses.is_dataclass(default):
-        return functools.reduce(operator.or_, family_of(type(default)))
-    return type(default)
+    return tuple[float, ...] if isinstance(default, tuple) else type(default)
 
 
-def _readings(text: str):
-    """What a text may mean, the narrowest first."""
+def family_of(kind: type):
+    """The annotation of a field of scene data that names a class, with its alternatives; the class where none does."""
+    fields = (part for owner in KNOWN.values() for wanted in annotations(owner).values() for part in within(wanted))
+    return next((part for part in fields if kind in members(part) and len(members(part)) > 1), kind)
+
+
+def _readings(text, wanted):
+    """What a text may mean, the narrowest first; what is no text means itself."""
+    if not isinstance(text, str):
+        yield text
+        return
     if text.lower() in ("none", "true", "false"):
         yield {"none": None, "true": True, "false": False}[text.lower()]
-    numbers = (float, int, lambda t: tuple(float(part) for part in t.strip("()").split(",") if part.strip()))
-    for read in numbers:
-        try:
+    unit = unit_of(wanted)
+
+    def number(part: str) -> float:
+        found = quantity(part, unit) if unit else None
+        return float(part) if found is None else found
+
+    for read in (number, int, lambda t: tuple(number(part) for part in t.strip("()").split(",") if part.strip())):
+        with contextlib.suppress(ValueError):
             yield read(text)
-        except ValueError:
-            pass
+    if text in KNOWN:
+        yield {"type": text}
     yield text
 
 
-def _parse(key: str, text: str, wanted):
-    """A text as what an annotation says: a number, a word, numbers separated by commas, or the name of a class."""
-    classes = {kind.__name__: kind for kind in members(wanted) if dataclasses.is_dataclass(kind)}
-    if text in classes:
+def _parse(key: str, text, wanted):
+    """A text as what an annotation says: a number, with a unit or without, a word, numbers separated by commas, or the
+    name of a class."""
+    near, refused = None, f"{short(key)}={short(text) if isinstance(text, str) else shown(text)} is refused: it"
+    try:  # in a tuple, as pydantic takes no settings beside a class that has its own
+        adapter = TypeAdapter(tuple[wanted], config=STRICT)
+    except PydanticUserError:
+        raise SceneError(f"{refused} is annotated {shown(wanted)}, which no value can be held to") from None
+    for value in _readings(text, wanted):
         try:
-            return classes[text]()
-        except TypeError as error:
-            raise SceneError(
-                f"{key}={short(text)} is refused: it needs parameters ({error}); build it in a scene file"
-            ) from None
-    for value in _readings(text):
-        if fits(value, wanted):
-            return value
-    raise SceneError(f"{short(key)}={short(text)} is refused: it must be {phrase(wanted)}")
+            return adapter.validate_python((value,))[0]
+        except ValidationError as error:
+            kinds = {problem["type"] for problem in error.errors(include_url=False)}
+            if "missing" in kinds and isinstance(value, dict):
+                raise SceneError(f"{refused} needs parameters; build it in a scene file") from None
+            if near is None and kinds & OUT_OF_RANGE:
+                near = refuse(short(key), value, phrase(wanted), remedy(wanted))
+    raise near or SceneError(f"{refused} must be {phrase(wanted)}")
 
 
-def _with_field(owner, kind, key: str, path: list[str], text: str):
+OUT_OF_RANGE = {"greater_than", "greater_than_equal", "less_than", "less_than_equal", "finite_number", "too_long"}
+"""What pydantic calls a number that is one, but not of those that are allowed."""
+
+
+def _with_field(owner, kind, key: str, path: list[str], text):
     """A copy of frozen data with one nested value replaced; `kind` is the annotation of `owner`, bodies.0.seeding
     indexes a tuple."""
     if not path:
@@ -224,20 +243,22 @@ def _with_field(owner, kind, key: str, path: list[str], text: str):
         if name not in map(str, range(len(owner))):
             raise SceneError(f"{short(key)}: {shown(name)} is no index; there are {len(owner)} entries, counted from 0")
         k = int(name)
-        return (*owner[:k], _with_field(owner[k], entry_kinds(kind, len(owner))[k], key, rest, text), *owner[k + 1 :])
+        entries = next(typing.get_args(part) for part in within(kind) if typing.get_origin(part) is tuple)
+        entry = _with_field(owner[k], entries[0 if entries[-1] is Ellipsis else k], key, rest, text)
+        return (*owner[:k], entry, *owner[k + 1 :])
     if not dataclasses.is_dataclass(owner):
         raise SceneError(f"{short(key)}: {shown(name)} is no field of a {type(owner).__name__}")
     names = [f.name for f in dataclasses.fields(owner)]
     if name not in names:
         raise SceneError(_unknown(name, names, type(owner).__name__))
-    value = _with_field(getattr(owner, name), typing.get_type_hints(type(owner))[name], key, rest, text)
+    value = _with_field(getattr(owner, name), annotations(type(owner))[name], key, rest, text)
     try:
         return replace(owner, **{name: value})
     except SceneError:
         raise
     except (TypeError, ValueError, AttributeError, ArithmeticError) as error:
         raise SceneError(
-            f"{short(key)}={short(text)} is refused: {type(owner).__name__} cannot be built: {error}"
+            f"{short(key)}={short(str(text))} is refused: {type(owner).__name__} cannot be built: {error}"
         ) from None
 
 

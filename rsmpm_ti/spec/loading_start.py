@@ -2,15 +2,17 @@
 
 import math
 from dataclasses import dataclass
+from typing import Annotated
 
-from rsmpm_ti.checks import check_kinds, check_positive
+from annotated_types import Interval
+
+from rsmpm_ti.checks import LARGEST, checked
+from rsmpm_ti.units import Time
+
+Duration = Annotated[Time, Interval(ge=1e-18, le=LARGEST)]
 
 
-def _check_time(start) -> None:
-    check_kinds("start", start)
-    check_positive("start.time", start.time, "time in seconds", least=1e-18)
-
-
+@checked("start")
 @dataclass(frozen=True, kw_only=True)
 class Affine:
     """Start with the velocity field of uniform straining between the platens: no first-wave shock."""
@@ -19,14 +21,12 @@ class Affine:
         return 1.0
 
 
+@checked("start")
 @dataclass(frozen=True, kw_only=True)
 class Ramp:
     """Start at rest; platens reach full speed after `time` [s] by a smooth step. At least 5 wave transits."""
 
-    time: float
-
-    def __post_init__(self):
-        _check_time(self)
+    time: Duration
 
     def factor(self, time: float) -> float:
         """Smooth step 3 s^2 - 2 s^3."""
@@ -45,6 +45,7 @@ class Ramp:
         return high * self.time
 
 
+@checked("start")
 @dataclass(frozen=True, kw_only=True)
 class Press:
     """Start at rest, press during `time` [s] with a speed of sin^2, then hold: what is left is a static state.
@@ -52,15 +53,13 @@ class Press:
     The strain is that of `time`/2 at full speed. At least 5 wave transits; with 8 what still swings is about 0.1 %.
     """
 
-    time: float
-
-    def __post_init__(self):
-        _check_time(self)
+    time: Duration
 
     def factor(self, time: float) -> float:
         return math.sin(math.pi * time / self.time) ** 2 if time < self.time else 0.0
 
 
+@checked("start")
 @dataclass(frozen=True, kw_only=True)
 class AtRest:
     """Bodies keep their own initial velocity and platens move at full speed from the first step."""

@@ -6,11 +6,14 @@ in it are removed and that its faces really separate, which `slit_check.slit_bri
 
 import math
 from dataclasses import dataclass
+from typing import Annotated
 
 import numpy as np
+from annotated_types import Interval, Len
 
-from rsmpm_ti.checks import LEAST, check_kinds, check_positive
+from rsmpm_ti.checks import LEAST, ByType, checked
 from rsmpm_ti.errors import refuse
+from rsmpm_ti.units import Angle, Length
 
 FARTHEST = 1e9
 """Largest coordinate and length [m]: beyond it a specimen is a mistake, and squares and node numbers overflow."""
@@ -19,14 +22,9 @@ DEEPEST, MOST_PARTS = 20, 10_000
 """Regions within regions, and all of them: every point of a specimen is asked of each."""
 
 
-def check_coordinates(name: str, values: tuple[float, ...]) -> None:
-    """Refuse what is no place in 2D or 3D."""
-    if len(values) not in (2, 3) or not all(abs(x) <= FARTHEST for x in values):
-        raise refuse(name, values, f"2 or 3 finite coordinates in metres, of size at most {FARTHEST:g}")
-
-
-def _check_length(name: str, value: float) -> None:
-    check_positive(name, value, "length in metres", most=FARTHEST)
+Coordinate = Annotated[Length, Interval(ge=-FARTHEST, le=FARTHEST)]
+Position = Annotated[tuple[Coordinate, ...], Len(2, 3)]
+Size = Annotated[Length, Interval(ge=LEAST, le=FARTHEST)]
 
 
 def _dimensions(parts: tuple) -> set[int]:
@@ -50,17 +48,15 @@ def _check_nest(name: str, parts: tuple) -> None:
         raise refuse(name, parts, f"at most {MOST_PARTS} regions, nested at most {DEEPEST} deep")
 
 
+@checked("box")
 @dataclass(frozen=True, kw_only=True)
 class Box:
     """Axis-aligned box between two corners."""
 
-    lower: tuple[float, ...]
-    upper: tuple[float, ...]
+    lower: Position
+    upper: Position
 
     def __post_init__(self):
-        check_kinds("box", self)
-        check_coordinates("box.lower", self.lower)
-        check_coordinates("box.upper", self.upper)
         edges = [b - a for a, b in zip(self.lower, self.upper, strict=False)]
         if len(self.lower) != len(self.upper) or not min(edges) >= LEAST:
             raise refuse("box.upper", self.upper, f"above box.lower = {self.lower} by {LEAST:g} m on every axis")
@@ -73,17 +69,13 @@ class Box:
         return np.array(self.lower), np.array(self.upper)
 
 
+@checked("disc")
 @dataclass(frozen=True, kw_only=True)
 class Disc:
     """Disc in 2D, ball in 3D."""
 
-    centre: tuple[float, ...]
-    radius: float
-
-    def __post_init__(self):
-        check_kinds("disc", self)
-        check_coordinates("disc.centre", self.centre)
-        _check_length("disc.radius", self.radius)
+    centre: Position
+    radius: Size
 
     def contains(self, x: np.ndarray) -> np.ndarray:
         return np.sum((x - np.array(self.centre)) ** 2, axis=1) < self.radius**2
@@ -92,6 +84,7 @@ class Disc:
         return np.array(self.centre) - self.radius, np.array(self.centre) + self.radius
 
 
+@checked("slit")
 @dataclass(frozen=True, kw_only=True)
 class Slit:
     """A straight flaw: a rectangle `length` x `width` at `angle` degrees from +x, through the thickness in 3D.
@@ -99,19 +92,13 @@ class Slit:
     `rounded`: its ends are half circles, as a saw or a drill leaves them; `length` is from end to end either way.
     """
 
-    centre: tuple[float, ...]
-    length: float
-    width: float
-    angle: float
+    centre: Position
+    length: Size
+    width: Size
+    angle: Annotated[Angle, Interval(ge=-360.0, le=360.0)]
     rounded: bool = False
 
     def __post_init__(self):
-        check_kinds("slit", self)
-        check_coordinates("slit.centre", self.centre)
-        _check_length("slit.length", self.length)
-        _check_length("slit.width", self.width)
-        if not abs(self.angle) <= 360.0:
-            raise refuse("slit.angle", self.angle, "in [-360, 360] degrees")
         if self.width > self.length:
             raise refuse("slit.width", self.width, f"at most slit.length = {self.length} m")
 
@@ -139,6 +126,7 @@ class Slit:
         return np.array(self.centre[:2]) - half, np.array(self.centre[:2]) + half
 
 
+@checked("union")
 @dataclass(frozen=True, kw_only=True)
 class Union:
     """What lies in any of the parts."""
@@ -146,7 +134,6 @@ class Union:
     parts: "tuple[Region, ...]"
 
     def __post_init__(self):
-        check_kinds("union", self)
         _check_nest("union.parts", self.parts)
         if not self.parts or len({len(part.bounds()[0]) for part in self.parts}) > 1:
             raise refuse("union.parts", self.parts, "at least one region, and all of one dimension")
@@ -159,6 +146,7 @@ class Union:
         return np.min(lower, axis=0), np.max(upper, axis=0)
 
 
+@checked("difference")
 @dataclass(frozen=True, kw_only=True)
 class Difference:
     """What lies in `whole` and in none of `removed`."""
@@ -167,7 +155,6 @@ class Difference:
     removed: "tuple[Region, ...]"
 
     def __post_init__(self):
-        check_kinds("difference", self)
         _check_nest("difference.whole", (self.whole,))
         _check_nest("difference.removed", self.removed)
         if len(_dimensions((self.whole, *self.removed))) > 1:
@@ -183,7 +170,7 @@ class Difference:
         return self.whole.bounds()
 
 
-Region = Box | Disc | Slit | Union | Difference
+Region = Annotated[Box | Disc | Slit | Union | Difference, ByType]
 """What a recorded scene or the command line may give as a region; a scene file may bring its own."""
 
 

@@ -6,10 +6,12 @@
 import math
 from dataclasses import dataclass, field, replace
 from functools import cached_property
+from typing import Annotated, Literal
 
 import numpy as np
+from annotated_types import Interval, Len
 
-from rsmpm_ti.checks import check_kinds, check_positive, check_size
+from rsmpm_ti.checks import LARGEST, ByType, Finite, NotNegative, Positive, Remedy, checked
 from rsmpm_ti.errors import SceneError, refuse
 from rsmpm_ti.method.shape import Gimp, Linear, QuadraticBSpline
 from rsmpm_ti.method.time_step import LEAST_CFL, MOST, check_step
@@ -18,14 +20,16 @@ from rsmpm_ti.rock.criteria import Unbreakable
 from rsmpm_ti.rock.heterogeneity import check_scale
 from rsmpm_ti.rock.rock import Rock
 from rsmpm_ti.spec.boundaries import Fixed, Platen, Wall
-from rsmpm_ti.spec.confinement import check_confined_rock, check_confinement
+from rsmpm_ti.spec.confinement import check_confined_rock
 from rsmpm_ti.spec.load_cell import LoadCell
 from rsmpm_ti.spec.loading_start import Affine, AtRest, Press, Ramp
-from rsmpm_ti.spec.mass_scaling import LARGEST, estimate
-from rsmpm_ti.spec.regions import FARTHEST, Region, check_coordinates, slits_of
+from rsmpm_ti.spec.mass_scaling import LARGEST as LARGEST_SCALE
+from rsmpm_ti.spec.mass_scaling import estimate
+from rsmpm_ti.spec.regions import FARTHEST, Position, Region, slits_of
 from rsmpm_ti.spec.scene_checks import check_bodies, check_cracks, check_loading, check_memory, check_motion
 from rsmpm_ti.spec.seeding import Jittered, Lattice, Seeds
 from rsmpm_ti.spec.slit_check import check_slit
+from rsmpm_ti.units import Acceleration, Length, LengthOrArea, Pressure, Spin, Time, Velocity
 
 MOST_BOUNDARIES, MOST_BODIES = 32, 5000
 
@@ -35,10 +39,13 @@ FINEST = 1e-9
 FINEST_SHARE = 1e-9
 """Smallest cell over the largest coordinate: round-off of a particle's place is then 1e-7 of a cell."""
 
+TimeScale = Annotated[float, Interval(ge=1.0, le=LARGEST_SCALE)] | Literal["auto"]
+
 GROWTH = 4
 """Lengths of a domain's longest edge by which it may grow on every side: each asks for pointers to empty blocks."""
 
 
+@checked("domain")
 @dataclass(frozen=True, kw_only=True)
 class Domain:
     """The background grid: a box of cells of edge dx [m]; `grid` is 'dense', 'sparse' or 'auto' (by occupancy).
@@ -47,27 +54,19 @@ class Domain:
     'grow' the grid, which must then be sparse, grows to where particles are, up to GROWTH domain lengths on every side.
     """
 
-    lower: tuple[float, ...]
-    upper: tuple[float, ...]
-    dx: float
-    grid: str = "dense"
-    outside: str = "stop"
+    lower: Position
+    upper: Position
+    dx: Annotated[Length, Interval(ge=FINEST, le=FARTHEST)]
+    grid: Literal["dense", "sparse", "auto"] = "dense"
+    outside: Literal["stop", "drop", "grow"] = "stop"
 
     def __post_init__(self):
-        check_kinds("domain", self)
-        check_positive("domain.dx", self.dx, "cell size in metres", least=FINEST, most=FARTHEST)
-        if len(self.lower) not in (2, 3) or len(self.lower) != len(self.upper):
-            raise refuse("domain.upper", self.upper, "2 or 3 coordinates, as many as domain.lower")
-        check_coordinates("domain.lower", self.lower)
-        check_coordinates("domain.upper", self.upper)
+        if len(self.lower) != len(self.upper):
+            raise refuse("domain.upper", self.upper, "as many coordinates as domain.lower")
         edges = [float(b) - float(a) for a, b in zip(self.lower, self.upper, strict=True)]
         if not all(edge >= self.dx for edge in edges):
             allowed = f"at least one cell, dx = {self.dx}, above domain.lower = {self.lower}"
             raise refuse("domain.upper", self.upper, allowed)
-        if self.grid not in ("dense", "sparse", "auto"):
-            raise refuse("domain.grid", self.grid, "'dense', 'sparse' or 'auto'")
-        if self.outside not in ("stop", "drop", "grow"):
-            raise refuse("domain.outside", self.outside, "'stop', 'drop' or 'grow'")
         if self.outside == "grow" and self.grid == "dense":
             allowed, remedy = "'stop' or 'drop' with a dense grid", "set domain.grid = 'sparse' to let it grow"
             raise refuse("domain.outside", self.outside, allowed, remedy)
@@ -100,21 +99,18 @@ class Domain:
         return max(map(abs, (*self.lower, *self.upper))) + self.room * self.dx
 
 
+@checked("body")
 @dataclass(frozen=True, kw_only=True)
 class Body:
     """Material that fills a region. Initial velocity [m/s] and, in the x-y plane, spin [rad/s] about its centre."""
 
     region: Region
-    seeding: Lattice | Jittered = Lattice()
-    velocity: tuple[float, ...] | None = None
-    spin: float = 0.0
-
-    def __post_init__(self):
-        check_kinds("body", self)
-        check_size("body.velocity", self.velocity or (), "components in m/s")
-        check_size("body.spin", (self.spin,), "a rate in rad/s")
+    seeding: Annotated[Lattice | Jittered, ByType] = Lattice()
+    velocity: tuple[Annotated[Velocity, Finite], ...] | None = None
+    spin: Annotated[Spin, Finite] = 0.0
 
 
+@checked("loading")
 @dataclass(frozen=True, kw_only=True)
 class Loading:
     """What drives the scene.
@@ -130,33 +126,23 @@ class Loading:
     cell: what is measured, and gauges; what it leaves open comes from the platens (see `load_cell.py`).
     """
 
-    boundaries: tuple[Platen | Wall | Fixed, ...] = ()
-    start: Affine | Ramp | Press | AtRest = AtRest()
-    time_scale: float | str = 1.0
-    quasi_static: float = 0.01
-    body_force: tuple[float, ...] | None = None
+    boundaries: Annotated[
+        tuple[Annotated[Platen | Wall | Fixed, ByType], ...],
+        Len(0, MOST_BOUNDARIES),
+        Remedy("every kernel holds code for each"),
+    ] = ()
+    start: Annotated[Affine | Ramp | Press | AtRest, ByType] = AtRest()
+    time_scale: TimeScale = 1.0
+    quasi_static: Annotated[float, Interval(ge=1e-6, le=1.0), Remedy("it is a share of the load")] = 0.01
+    body_force: tuple[Annotated[Acceleration, Finite], ...] | None = None
     force_field: object | None = None
-    width: float | None = None
-    confinement: float = 0.0
+    width: Annotated[LengthOrArea, Positive] | None = None
+    confinement: Annotated[Pressure, NotNegative, Remedy("it is compression positive")] = 0.0
     cell: LoadCell = LoadCell()
 
     def __post_init__(self):
-        check_kinds("loading", self)
-        if len(self.boundaries) > MOST_BOUNDARIES:
-            allowed = f"at most {MOST_BOUNDARIES} of them, as every kernel holds code for each"
-            raise refuse("loading.boundaries", self.boundaries, allowed)
-        number = not isinstance(self.time_scale, str) and 1.0 <= self.time_scale <= LARGEST
-        if not (number or self.time_scale == "auto"):
-            allowed = f"in [1, {LARGEST:g}] or 'auto'"
-            raise refuse("loading.time_scale", self.time_scale, allowed, "1 is the true density")
-        if not 1e-6 <= self.quasi_static <= 1.0:
-            raise refuse("loading.quasi_static", self.quasi_static, "in [1e-6, 1]", "it is a share of the load")
-        check_size("loading.body_force", self.body_force or (), "components in m/s^2")
         if self.force_field is not None and not callable(getattr(self.force_field, "acceleration", None)):
             raise refuse("loading.force_field", self.force_field, "an object with a ti.func acceleration(X, t)")
-        if self.width is not None:
-            check_positive("loading.width", self.width, "length in metres (area in 3D)")
-        check_confinement(self.confinement)
 
     @property
     def platens(self) -> tuple[Platen, Platen] | None:
@@ -186,6 +172,7 @@ class Loading:
         return (lower.speed - upper.speed) / self.height
 
 
+@checked("schedule")
 @dataclass(frozen=True, kw_only=True)
 class Schedule:
     """How long, and in what steps. Give `strain_end` (platen strain, compression positive) or `t_end` [s].
@@ -195,27 +182,20 @@ class Schedule:
     """
 
     strain_end: float | None = None
-    t_end: float | None = None
-    cfl: float = 0.5
-    dt: float | None = None
-    rows: int = 1000
+    t_end: Annotated[Time, Interval(ge=1e-30, le=LARGEST)] | None = None
+    cfl: Annotated[float, Interval(ge=LEAST_CFL, le=1e3)] = 0.5
+    dt: Annotated[Time, Interval(ge=1e-30, le=LARGEST)] | None = None
+    rows: Annotated[int, Interval(ge=1, le=1_000_000)] = 1000
     adaptive: bool = False
 
     def __post_init__(self):
-        check_kinds("schedule", self)
         if (self.strain_end is None) == (self.t_end is None):
             raise SceneError("schedule: give exactly one of strain_end (platen strain) and t_end (seconds)")
-        for name in ("t_end", "dt"):
-            value = getattr(self, name)
-            if value is not None:
-                check_positive(f"schedule.{name}", value, "time in seconds", least=1e-30)
         if self.strain_end is not None and not 0.0 < abs(self.strain_end) < 0.5:
             raise refuse("schedule.strain_end", self.strain_end, "a strain of size in (0, 0.5)")
-        check_positive("schedule.cfl", self.cfl, "share of the time a wave needs for one cell", LEAST_CFL, 1e3)
-        if not 1 <= self.rows <= 1_000_000:
-            raise refuse("schedule.rows", self.rows, "a whole number from 1 to 1 000 000")
 
 
+@checked("output")
 @dataclass(frozen=True, kw_only=True)
 class Output:
     """What is written. Frames come at equal strain (or time) intervals and when failed particles jump.
@@ -224,49 +204,33 @@ class Output:
     margin to failure.
     """
 
-    frames: int = 60
+    frames: Annotated[int, Interval(ge=0, le=10_000)] = 60
     movie: bool = True
-    vtu: int = 10
-    painter: str = "raster"
+    vtu: Annotated[int, Interval(ge=0, le=10_000)] = 10
+    painter: Literal["raster", "ggui"] = "raster"
     margin: bool = False
-    stress_limit: float | None = None
-
-    def __post_init__(self):
-        check_kinds("output", self)
-        for name in ("frames", "vtu"):
-            value = getattr(self, name)
-            if not 0 <= value <= 10_000:
-                raise refuse(f"output.{name}", value, "a whole number from 0 to 10 000")
-        if self.painter not in ("raster", "ggui"):
-            raise refuse("output.painter", self.painter, "'raster' or 'ggui'")
-        if self.stress_limit is not None:
-            check_positive("output.stress_limit", self.stress_limit, "stress in Pa")
+    stress_limit: Annotated[Pressure, Positive] | None = None
 
 
+@checked("scene")
 @dataclass(frozen=True, kw_only=True)
 class Scene:
     """One numerical experiment, complete. One rock per scene; 2D is plane strain unless its rock says otherwise."""
 
     title: str
     domain: Domain
-    bodies: tuple[Body, ...]
+    bodies: Annotated[tuple[Body, ...], Len(1, MOST_BODIES)]
     rock: Rock
     loading: Loading
     schedule: Schedule
-    shape: Linear | Gimp | QuadraticBSpline = QuadraticBSpline()
-    transfer: PicFlip | Apic = PicFlip()
-    order: str = "musl"
+    shape: Annotated[Linear | Gimp | QuadraticBSpline, ByType] = QuadraticBSpline()
+    transfer: Annotated[PicFlip | Apic, ByType] = PicFlip()
+    order: Literal["musl", "usf", "usl"] = "musl"
     output: Output = field(default_factory=Output)
 
     def __post_init__(self):
-        check_kinds("scene", self)
         if len(self.title) > 200 or not self.title.isprintable():
             raise refuse("scene.title", self.title, "at most 200 printable characters in one line")
-        if not 0 < len(self.bodies) <= MOST_BODIES:
-            few = f"has {len(self.bodies)} entries" if self.bodies else "is empty"
-            raise SceneError(f"scene.bodies {few}: give at least one Body, at most {MOST_BODIES}")
-        if self.order not in ("musl", "usf", "usl"):
-            raise refuse("scene.order", self.order, "'musl', 'usf' or 'usl'")
         if self.order == "usl" and isinstance(self.shape, Linear):
             raise SceneError(
                 "scene.order = 'usl' with Linear shape functions is refused: its critical step tends to 0 when a "

@@ -1,43 +1,23 @@
-"""A scene as JSON and back, without executing anyone's code: names are looked up in a fixed list of classes."""
+"""A scene as JSON and back, without executing anyone's code: classes are chosen by "type" among those of an annotation.
+
+`python -m rsmpm_ti.scene --schema > scene.schema.json` prints the JSON schema. An editor that is told of it completes
+and checks a scene.json while it is written; in VS Code by
+    "json.schemas": [{"fileMatch": ["scene.json"], "url": "./scene.schema.json"}]
+"""
 
 import dataclasses
 import json
-import typing
 
-from rsmpm_ti.checks import fits, members, phrase
-from rsmpm_ti.errors import SceneError, refuse, short, shown
+from pydantic import ValidationError
+
+from rsmpm_ti.checks import adapter, refusal
+from rsmpm_ti.errors import SceneError, short, shown
 from rsmpm_ti.spec.scene import Scene
 
 
-def _reachable(annotation, found: dict[str, type]) -> None:
-    """Add every dataclass that an annotation names, directly or through fields, to `found`."""
-    for kind in (annotation, *typing.get_args(annotation)):
-        if isinstance(kind, type) and dataclasses.is_dataclass(kind):
-            if kind.__name__ not in found:
-                found[kind.__name__] = kind
-                for inner in typing.get_type_hints(kind).values():
-                    _reachable(inner, found)
-        elif kind is not annotation:
-            _reachable(kind, found)
-
-
-KNOWN: dict[str, type] = {}
-"""Every class that a recorded scene may name: those within reach of the annotations of `Scene`."""
-_reachable(Scene, KNOWN)
-
-
-def family_of(kind: type) -> tuple[type, ...]:
-    """The classes that may stand where one of scene data stands: the alternatives of an annotation that names it."""
-    for owner in KNOWN.values():
-        for annotation in typing.get_type_hints(owner).values():
-            for alternatives in (annotation, *typing.get_args(annotation)):
-                if kind in members(alternatives) and len(members(alternatives)) > 1:
-                    return tuple(k for k in members(alternatives) if dataclasses.is_dataclass(k))
-    return (kind,)
-
-
 def to_plain(value):
-    """Dataclasses -> {"type": name, field: ...}; tuples -> lists; numbers and strings stay."""
+    """Dataclasses -> {"type": name, field: ...}; tuples -> lists; numbers and strings stay. By hand, as a scene file
+    may have brought objects of its own."""
     if dataclasses.is_dataclass(value):
         fields = {f.name: to_plain(getattr(value, f.name)) for f in dataclasses.fields(value)}
         return {"type": type(value).__name__, **fields}
@@ -46,32 +26,30 @@ def to_plain(value):
     return value
 
 
-def from_plain(value, where: str = "scene"):
+def from_plain(plain) -> Scene:
     """The inverse of `to_plain`; raises SceneError for unknown types and fields and wrong kinds, naming the place."""
-    if isinstance(value, list):
-        return tuple(from_plain(v, f"{where}[{k}]") for k, v in enumerate(value))
-    if not isinstance(value, dict):
-        return value
-    kind = KNOWN.get(str(value.get("type")))
-    if kind is None:
-        raise SceneError(
-            f"{where}: unknown type {shown(value.get('type'))}; known types are {', '.join(sorted(KNOWN))}"
-        )
-    wanted = typing.get_type_hints(kind)
-    names = {f.name for f in dataclasses.fields(kind)}
-    unknown = set(value) - names - {"type"}
-    if unknown:
-        raise SceneError(f"{where}: {kind.__name__} has no field {shown(sorted(unknown))}; it has {sorted(names)}")
-    fields = {k: from_plain(v, f"{where}.{k}") for k, v in value.items() if k != "type"}
-    for k, v in fields.items():
-        if not fits(v, wanted[k]):
-            raise refuse(f"{where}.{k}", v, phrase(wanted[k]))
+    plain = _with_tuples(plain)
     try:
-        return kind(**fields)
-    except SceneError as error:
-        raise SceneError(f"{where}: {error}") from None
-    except (TypeError, ValueError, AttributeError, ArithmeticError) as error:
-        raise SceneError(f"{where}: {kind.__name__} cannot be built: {error}") from None
+        return adapter(Scene).validate_python(plain)
+    except ValidationError as error:
+        raise refusal("scene", Scene, plain, error) from None
+    except (TypeError, AttributeError, ArithmeticError) as error:
+        raise SceneError(f"scene: it cannot be built: {error}") from None
+
+
+def _with_tuples(value):
+    """JSON's lists as what scene data holds."""
+    if isinstance(value, dict):
+        return {key: _with_tuples(field) for key, field in value.items()}
+    return tuple(map(_with_tuples, value)) if isinstance(value, list) else value
+
+
+def schema() -> str:
+    """The JSON schema of a scene.json, in which the scene may stand by itself or beside what a run recorded."""
+    scene = adapter(Scene).json_schema()
+    entry = {"type": "object", "required": ["scene"], "properties": {"scene": {"$ref": "#/$defs/Scene"}}}
+    classes = scene.pop("$defs") | {"Scene": scene}
+    return json.dumps({"$defs": classes, "anyOf": [entry, {"$ref": "#/$defs/Scene"}]}, indent=1)
 
 
 def _once(pairs: list[tuple]) -> dict:
@@ -89,11 +67,8 @@ def read_scene(path) -> Scene:
     try:
         with open(path, encoding="utf-8") as file:
             data = json.load(file, object_pairs_hook=_once)
-        scene = from_plain(data.get("scene", data) if isinstance(data, dict) else data)
+        return from_plain(data.get("scene", data) if isinstance(data, dict) else data)
     except SceneError:
         raise
     except (OSError, ValueError, RecursionError) as error:  # ValueError: no UTF-8, no JSON, or an endless integer
         raise SceneError(f"{path} cannot be read as JSON: {short(str(error))}") from None
-    if not isinstance(scene, Scene):
-        raise SceneError(f"{path} holds a {type(scene).__name__}, not a Scene")
-    return scene

@@ -6,17 +6,14 @@ Also the check that a slit's two faces really separate, which needs the particle
 import itertools
 import math
 from dataclasses import dataclass
-from typing import NamedTuple
+from typing import Annotated, NamedTuple
 
 import numpy as np
+from annotated_types import Interval
 
-from rsmpm_ti.checks import check_kinds, check_seed
-from rsmpm_ti.errors import refuse
+from rsmpm_ti.checks import Remedy, Seed, checked
 
-
-def _check_per_axis(value: int) -> None:
-    if not 1 <= value <= 8:
-        raise refuse("seeding.particles_per_axis", value, "a whole number from 1 to 8")
+PerAxis = Annotated[int, Interval(ge=1, le=8)]
 
 
 class Seeds(NamedTuple):
@@ -99,6 +96,7 @@ def _merge_slivers(share: np.ndarray, moment: np.ndarray, x: np.ndarray, counts:
     share[giving] = 0.0
 
 
+@checked("seeding")
 @dataclass(frozen=True, kw_only=True)
 class Lattice:
     """`particles_per_axis` particles along each axis of a cell, at the centres of equal sub-cells.
@@ -107,12 +105,8 @@ class Lattice:
     inside, small remainders joined to a neighbour; otherwise edges are stairs of whole sub-cells, as in the paper.
     """
 
-    particles_per_axis: int = 2
+    particles_per_axis: PerAxis = 2
     fitted: bool = False
-
-    def __post_init__(self):
-        check_kinds("seeding", self)
-        _check_per_axis(self.particles_per_axis)
 
     def fill(self, region, origin: np.ndarray, dx: float) -> Seeds:
         """Particles of a region on a grid of cells dx [m] with a node at origin [dim]."""
@@ -120,6 +114,7 @@ class Lattice:
         return fill(region, origin, dx / self.particles_per_axis)
 
 
+@checked("seeding")
 @dataclass(frozen=True, kw_only=True)
 class Jittered:
     """The lattice with every particle moved at random, so that cracks do not follow grid columns.
@@ -127,17 +122,10 @@ class Jittered:
     `amount` is the largest move along each axis as a fraction of the particle spacing; `seed` fixes it.
     """
 
-    particles_per_axis: int = 2
-    amount: float = 0.1
-    seed: int = 1
+    particles_per_axis: PerAxis = 2
+    amount: Annotated[float, Interval(ge=0.0, lt=0.5), Remedy("at 0.5 two particles can coincide")] = 0.1
+    seed: Seed = 1
     fitted: bool = False
-
-    def __post_init__(self):
-        check_kinds("seeding", self)
-        _check_per_axis(self.particles_per_axis)
-        if not 0.0 <= self.amount < 0.5:
-            raise refuse("seeding.amount", self.amount, "in [0, 0.5)", "at 0.5 two particles can coincide")
-        check_seed("seeding.seed", self.seed)
 
     def fill(self, region, origin: np.ndarray, dx: float) -> Seeds:
         """Particles of a region. Membership is decided before the move, so that faces stay smooth

@@ -247,7 +247,7 @@ PRESSURES = {
 AFTER_FAILURE = [
     *(
         build(kind)
-        for kind in typing.get_args(Rock.__dataclass_fields__["after_failure"].type)
+        for kind in typing.get_args(typing.get_type_hints(Rock)["after_failure"])
         if not kind.oriented  # those have the closed forms of test_cracked_cell
     ),
     Clipped(tension_limit=0.0, compression_limit=5e6),

@@ -22,6 +22,7 @@ from hostile import (
     clear,
     home,
     names_below,
+    number_of,
     put,
     quickly,
     reading,
@@ -31,11 +32,12 @@ from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
 from rsmpm_ti.analysis import summary
+from rsmpm_ti.checks import KNOWN
 from rsmpm_ti.errors import SceneError, shown
 from rsmpm_ti.scene import main
 from rsmpm_ti.spec.loader import available, keywords_of, load_scene
 from rsmpm_ti.spec.loading_start import AtRest
-from rsmpm_ti.spec.scene_json import KNOWN, read_scene, to_plain
+from rsmpm_ti.spec.scene_json import read_scene, to_plain
 
 SMALL = {"dx": 2e-3, "flaw_width": 6e-3}
 KEYWORDS = tuple(keywords_of(available()["cube"]))
@@ -133,7 +135,7 @@ def check_setting(command, name: str, text: str) -> None:
     if scene is None:
         assert named(message, name) or name not in NAMES, message
     elif name in KEYWORDS:
-        assert scene == load_scene("cube", **(SMALL | {name: float(text)}))
+        assert scene == load_scene("cube", **(SMALL | {name: number_of(text)}))
     else:
         value = at(scene, [int(step) if step.isdigit() else step for step in name.strip().split(".")])
         assert reading(text.strip(), value), f"{name} = {value!r}"

@@ -246,7 +246,9 @@ def test_axes_of_the_load_curve_reach_the_confined_strength():
 
 @pytest.mark.parametrize("p", [-1.0, math.nan, math.inf])
 def test_pressure_that_is_none_is_refused(p):
-    with pytest.raises(SceneError, match=r"loading\.confinement = \S+ is refused: it must be zero or more"):
+    with pytest.raises(
+        SceneError, match=r"loading\.confinement = \S+ is refused: it must be a number in \[0, 1e\+18\] Pa"
+    ):
         Loading(confinement=p)
 
 

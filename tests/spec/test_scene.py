@@ -23,7 +23,7 @@ BY_FIELD = [
     ("domain.upper", lambda: make(domain_upper=(0.055, -0.1))),
     ("domain.upper", lambda: make(domain_upper=(0.055, INF))),
     ("domain.upper", lambda: make(domain_upper=(0.055, 0.1, 0.1))),
-    ("domain.upper", lambda: Domain(lower=(0.0,), upper=(1.0,), dx=0.1)),
+    ("domain.lower", lambda: Domain(lower=(0.0,), upper=(1.0,), dx=0.1)),
     ("domain.upper", lambda: Domain(lower=(0.0, 0.0), upper=(0.01, 1.0), dx=0.1)),
     ("domain.grid", lambda: make(domain_grid="adaptive")),
     *[("loading.time_scale", lambda v=v: make(loading_time_scale=v)) for v in (0.5, 0.0, -1.0, 1e4, NAN)],
@@ -145,7 +145,7 @@ def test_region_of_another_dimension_is_refused():
 
 
 def test_scene_without_material_is_refused():
-    assert "scene.bodies is empty" in refusal(lambda: make(bodies=()))
+    assert "scene.bodies = () is refused" in refusal(lambda: make(bodies=()))
     tiny = make(bodies=body(region=Disc(centre=(0.025, 0.05), radius=1e-5)))
     assert "bodies[0].region holds no particle" in refusal(tiny.particles)
 

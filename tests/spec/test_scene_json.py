@@ -2,21 +2,25 @@
 
 import dataclasses
 import json
+from pathlib import Path
 
 import numpy as np
 import pytest
 from small_scene import SHIPPED, make, platens, refusal
 
+from rsmpm_ti.checks import KNOWN
 from rsmpm_ti.method.shape import Gimp
 from rsmpm_ti.method.transfer import Apic
 from rsmpm_ti.rock.criteria import MohrCoulomb
 from rsmpm_ti.rock.elasticity import Hooke
 from rsmpm_ti.rock.rock import Rock
 from rsmpm_ti.spec.boundaries import Fixed
+from rsmpm_ti.spec.load_cell import LoadCell
 from rsmpm_ti.spec.loader import load_scene
 from rsmpm_ti.spec.loading_start import AtRest
 from rsmpm_ti.spec.scene import Scene
-from rsmpm_ti.spec.scene_json import KNOWN, from_plain, read_scene, to_plain
+from rsmpm_ti.spec.scene_json import from_plain, read_scene, schema, to_plain
+from rsmpm_ti.spec.seeding import Lattice
 
 
 def through_json(scene: Scene) -> Scene:
@@ -73,15 +77,15 @@ def test_unknown_missing_and_wrong_fields_are_refused_by_place():
 @pytest.mark.parametrize(
     "place, value, words",
     [
-        ("order", 3, "a text"),
+        ("order", 3, "'musl', 'usf' or 'usl'"),
         ("title", None, "a text"),
         ("shape", {"type": "Apic"}, "Linear, Gimp or QuadraticBSpline"),
-        ("domain.dx", True, "a number"),
-        ("domain.dx", "0.5e-3", "a number"),
-        ("domain.dx", 10**400, "a number"),
+        ("domain.dx", True, "a positive number"),
+        ("domain.dx", "0.5e-3", "a positive number"),
+        ("domain.dx", 10**400, "a positive number"),
         ("domain.lower", [0.0, "0"], "numbers"),
         ("schedule.rows", 10.0, "an integer"),
-        ("schedule.dt", [1e-8], "a number or none"),
+        ("schedule.dt", [1e-8], "a positive number in [1e-30, 1e+18] s or none"),
         ("output.movie", 1, "true or false"),
         ("output.margin", 0, "true or false"),
         ("bodies.0.region", {"type": "Linear"}, "Box, Disc"),
@@ -106,6 +110,39 @@ def test_whole_numbers_will_do_for_numbers():
     plain = to_plain(make())
     plain["loading"]["time_scale"], plain["domain"]["lower"] = 2, [-1, 0]
     assert from_plain(plain).density == 4 * 2600.0
+
+
+def test_scene_recorded_before_the_move_still_loads():
+    """Written by the code of 2026-11-23; fields that are new since then have their defaults."""
+    path = Path(__file__).parent / "recorded_disc_lab.json"
+    recorded = json.loads(path.read_text())["scene"]
+    recorded["loading"]["cell"] = to_plain(LoadCell())
+    assert to_plain(read_scene(path)) == recorded
+
+
+def test_schema_describes_every_class_and_field():
+    described = json.loads(schema())["$defs"]
+    assert described.keys() == KNOWN.keys()
+    for name, kind in KNOWN.items():
+        fields = {f.name: f for f in dataclasses.fields(kind)}
+        needed = [n for n, f in fields.items() if f.default is f.default_factory is dataclasses.MISSING]
+        assert list(described[name]["properties"]) == ["type", *fields] and described[name]["required"] == [
+            "type",
+            *needed,
+        ]
+        assert described[name]["properties"]["type"] == {"const": name}
+        assert described[name]["additionalProperties"] is False
+
+
+def test_schema_holds_ranges_units_choices_and_defaults():
+    described = json.loads(schema())["$defs"]
+    hooke = described["Hooke"]["properties"]
+    assert (hooke["nu"]["exclusiveMinimum"], hooke["nu"]["exclusiveMaximum"]) == (-1.0, 0.5)
+    assert (hooke["E"]["description"], hooke["E"]["minimum"]) == ("[Pa]", 1e-12)
+    assert described["Scene"]["properties"]["order"]["enum"] == ["musl", "usf", "usl"]
+    regions = {"#/$defs/" + name for name in ("Box", "Disc", "Slit", "Union", "Difference")}
+    assert {one["$ref"] for one in described["Body"]["properties"]["region"]["oneOf"]} == regions
+    assert described["Body"]["properties"]["seeding"]["default"] == to_plain(Lattice())
 
 
 def test_only_dataclasses_of_scenes_can_be_named():
