@@ -183,7 +183,7 @@ def test_every_order_is_compared():
 
 
 def test_step_in_3d_is_that_of_a_plain_loop(simulations):
-    scene = make_scene(Linear(), Apic(), cells=(5, 4, 3), viscosity=BulkViscosity(), body_force=(*WEIGHT, 2e8))
+    scene = make_scene(Linear(), Apic(), cells=(5, 4, 3), viscosity=BulkViscosity())
     compare_step(scene, shared(simulations, scene))
 
 
