@@ -3,11 +3,9 @@
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.sparse import coo_array
-from scipy.sparse.csgraph import connected_components
-from scipy.spatial import cKDTree
 
 from rsmpm_ti.analysis.crack_path import REACH
+from rsmpm_ti.analysis.neighbours import components, pairs_within
 from rsmpm_ti.records.snapshot import TENSION
 
 BIN = 0.1
@@ -42,16 +40,10 @@ def gather(events, spacing: float, shear_speed: float) -> Catalogue:
     differences are not.
     """
     e, reach = len(events), REACH * spacing
-    labels = np.zeros(0, dtype=int)
-    if e:
-        # largest difference over all axes first, from the tree; the ball in space is cut out of that box
-        pairs = cKDTree(np.column_stack([events.x, shear_speed * events.time])).query_pairs(
-            reach, p=np.inf, output_type="ndarray"
-        )
-        a, b = pairs.reshape(-1, 2).T
-        close = np.linalg.norm(events.x[a] - events.x[b], axis=1) <= reach
-        graph = coo_array((np.ones(close.sum()), (a[close], b[close])), shape=(e, e))
-        labels = connected_components(graph, directed=False)[1]
+    # largest difference over all axes first, from the tree; the ball in space is cut out of that box
+    a, b = pairs_within(np.column_stack([events.x, shear_speed * events.time]), reach, p=np.inf)
+    close = np.linalg.norm(events.x[a] - events.x[b], axis=1) <= reach
+    labels = components(e, a[close], b[close])
     # failures come in the order of time, so the first of each label is its first in time
     names, first, labels = np.unique(labels, return_index=True, return_inverse=True)
     order = np.argsort(first)

@@ -7,21 +7,22 @@ from dataclasses import dataclass
 
 import numpy as np
 from scipy.sparse import csr_array
-from scipy.sparse.csgraph import connected_components
 from scipy.spatial import cKDTree
 
-from rsmpm_ti.analysis.crack_growth import WINDOW, growth, tip_speed
 from rsmpm_ti.analysis.crack_opening import jumps
 from rsmpm_ti.analysis.crack_path import (
     REACH,
+    WINDOW,
     centre_path,
     distances,
+    growth,
     mean_direction,
-    neighbour_graph,
     path_length,
+    tip_speed,
     tortuosity,
 )
 from rsmpm_ti.analysis.flaw_tips import FlawTip, first_angle, nearest_tip
+from rsmpm_ti.analysis.neighbours import bands_of, neighbour_graph
 from rsmpm_ti.analysis.wing_cracks import FEWEST
 from rsmpm_ti.records.snapshot import INTACT, TENSION, Snapshot
 
@@ -75,7 +76,7 @@ def find_bands(events, spacing: float) -> tuple[list[np.ndarray], csr_array]:
     graph = neighbour_graph(events.x, REACH * spacing)
     if len(events) == 0:
         return [], graph
-    labels = connected_components(graph, directed=False)[1]
+    labels = bands_of(graph)
     order = np.argsort(labels, kind="stable")
     bands = np.split(order, np.cumsum(np.bincount(labels))[:-1])
     bands = [band for band in bands if len(np.unique(events.id[band])) >= FEWEST]

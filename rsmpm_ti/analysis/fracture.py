@@ -6,7 +6,7 @@ import numpy as np
 
 from rsmpm_ti.analysis.acoustic_emission import BValue, Catalogue, b_value, gather
 from rsmpm_ti.analysis.crack_bands import Crack, find_bands, measure_cracks, openings
-from rsmpm_ti.analysis.crack_growth import rayleigh_speed
+from rsmpm_ti.analysis.crack_path import rayleigh_speed
 from rsmpm_ti.analysis.flaw_tips import flaw_tips, initiations
 from rsmpm_ti.analysis.fragments import Fragments, find_fragments
 from rsmpm_ti.analysis.numerical_fracture import parting_warning

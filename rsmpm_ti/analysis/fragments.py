@@ -3,10 +3,8 @@
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.sparse import coo_array
-from scipy.sparse.csgraph import connected_components
-from scipy.spatial import cKDTree
 
+from rsmpm_ti.analysis.neighbours import components, pairs_within
 from rsmpm_ti.records.snapshot import INTACT, Snapshot
 
 JOIN = 1.5
@@ -87,11 +85,9 @@ def _components(x: np.ndarray, spacing: np.ndarray) -> np.ndarray:
         return np.zeros(0, dtype=int)
     # one swollen particle must not make every search wide
     farthest = JOIN * min(spacing.max(), 2.0 * np.median(spacing))
-    pairs = cKDTree(x).query_pairs(farthest, output_type="ndarray").reshape(-1, 2)
-    a, b = pairs.T
+    a, b = pairs_within(x, farthest)
     close = np.linalg.norm(x[a] - x[b], axis=1) <= 0.5 * JOIN * (spacing[a] + spacing[b])
-    graph = coo_array((np.ones(close.sum()), (a[close], b[close])), shape=(len(x), len(x)))
-    return connected_components(graph, directed=False)[1]
+    return components(len(x), a[close], b[close])
 
 
 def _diameter(volume: float, dim: int) -> float:

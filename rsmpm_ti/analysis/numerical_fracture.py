@@ -5,8 +5,8 @@ such a node up to a distance of b dx, wherever they are in their cells; beyond i
 """
 
 import numpy as np
-from scipy.spatial import cKDTree
 
+from rsmpm_ti.analysis.neighbours import pairs_within
 from rsmpm_ti.records.snapshot import INTACT, Snapshot
 from rsmpm_ti.spec.scene import Scene
 
@@ -24,7 +24,7 @@ def parted(scene: Scene, snapshot: Snapshot) -> np.ndarray:
     nowhere = np.zeros((0, scene.dim))
     if len(whole) < 2 or np.linalg.norm(np.ptp(u, axis=0)) < bridge - near:  # as in every run of rock that is sound
         return nowhere
-    a, b = cKDTree(x - u).query_pairs(near, output_type="ndarray").T
+    a, b = pairs_within(x - u, near)
     distance = np.linalg.norm(x[a] - x[b], axis=1)
     wide = np.argsort(-distance)[: np.count_nonzero(distance > bridge)]
     return 0.5 * (x[a] + x[b])[wide]

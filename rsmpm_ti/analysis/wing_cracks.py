@@ -3,11 +3,9 @@
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.sparse import coo_array
-from scipy.sparse.csgraph import connected_components
-from scipy.spatial import cKDTree
 
 from rsmpm_ti.analysis.crack_path import REACH
+from rsmpm_ti.analysis.neighbours import components, pairs_within
 from rsmpm_ti.spec.regions import Slit
 
 TIP_RADIUS = 3.0e-3
@@ -93,10 +91,9 @@ def first_crack_angles(x: np.ndarray, normal: np.ndarray, slit: Slit) -> list[fl
 
 def _connected(x: np.ndarray, reach: float, seed: int, allowed: np.ndarray) -> np.ndarray:
     """Indices of the points joined to `seed` through gaps of at most `reach`."""
-    pairs = cKDTree(x).query_pairs(reach, output_type="ndarray")
-    pairs = pairs[allowed[pairs].all(axis=1)] if len(pairs) else pairs.reshape(0, 2)
-    graph = coo_array((np.ones(len(pairs)), (pairs[:, 0], pairs[:, 1])), shape=(len(x), len(x)))
-    labels = connected_components(graph, directed=False)[1]
+    a, b = pairs_within(x, reach)
+    both = allowed[a] & allowed[b]
+    labels = components(len(x), a[both], b[both])
     return np.flatnonzero((labels == labels[seed]) & allowed)
 
 

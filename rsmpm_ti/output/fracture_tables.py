@@ -37,7 +37,7 @@ def write_fracture(out: Path, fracture: Fracture, history: np.ndarray) -> None:
 
 def _crack_columns(axes: str) -> tuple[str, ...]:
     """growth_m is the furthest distance within the band from where the crack began; tip_speed the largest over
-    `crack_growth.WINDOW`, in the run's own time; slip the faces' sliding on each other, dextral positive."""
+    `crack_path.WINDOW`, in the run's own time; slip the faces' sliding on each other, dextral positive."""
     return (
         "crack", "particles", "tension_failures", "shear_failures", "shear_share", "shear_energy_share",
         "released_energy_J", "initiation_time_s", "initiation_stress_Pa", "initiation_strain",

@@ -62,7 +62,7 @@ class AfterFailure:
 
     @ti.func
     def respond(self, sim: ti.template(), p, G, dt):
-        """(stress, energy lost) after a step of dt [s] with displacement gradient G; sigma[p] is the elastic trial stress.
+        """(stress, energy lost) after a step of dt [s] with displacement gradient G; sigma[p] is the elastic trial.
 
         It may change the mode of a particle from tension to shear.
         """

@@ -4,11 +4,11 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 import taichi as ti
-from scipy.sparse.csgraph import connected_components
 
 from rsmpm_ti import load_scene
-from rsmpm_ti.analysis.crack_path import REACH, neighbour_graph
+from rsmpm_ti.analysis.crack_path import REACH
 from rsmpm_ti.analysis.load_curve import loading_curve
+from rsmpm_ti.analysis.neighbours import bands_of, neighbour_graph
 from rsmpm_ti.analysis.wing_cracks import crack_directions, leaving_angle
 from rsmpm_ti.errors import UnstableRun
 from rsmpm_ti.records.snapshot import TENSION
@@ -156,7 +156,7 @@ def wings(begun: np.ndarray, x: np.ndarray, spacing: float, half: float) -> tupl
 def _wing(x: np.ndarray, side: np.ndarray, spacing: float) -> WingStart:
     if len(x) == 0:
         return WingStart(0.0, float("nan"))
-    labels = connected_components(neighbour_graph(x, REACH * spacing), directed=False)[1]
+    labels = bands_of(neighbour_graph(x, REACH * spacing))
     x = x[labels == labels[0]]
     outward = np.array([1.0 if side[0] >= 0.0 else -1.0, 0.0])
     return WingStart(float(np.linalg.norm(x - x[0], axis=1).max()), leaving_angle(x, x[0], outward))

@@ -8,8 +8,8 @@ from broken_bands import SPACING, failures, history, lattice, scattered, snapsho
 from scipy.spatial import cKDTree
 
 from rsmpm_ti.analysis.crack_bands import find_bands, measure_cracks, openings
-from rsmpm_ti.analysis.crack_growth import growth, rayleigh_speed, tip_speed
 from rsmpm_ti.analysis.crack_opening import jumps
+from rsmpm_ti.analysis.crack_path import growth, rayleigh_speed, tip_speed
 from rsmpm_ti.analysis.flaw_tips import flaw_tips, initiations
 from rsmpm_ti.analysis.load_curve import load_at
 from rsmpm_ti.analysis.wing_cracks import FEWEST

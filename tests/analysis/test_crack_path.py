@@ -9,10 +9,10 @@ from rsmpm_ti.analysis.crack_path import (
     centre_path,
     distances,
     mean_direction,
-    neighbour_graph,
     path_length,
     tortuosity,
 )
+from rsmpm_ti.analysis.neighbours import neighbour_graph
 
 
 def path_of(x: np.ndarray, seed: int = 0) -> np.ndarray:

@@ -209,7 +209,7 @@ def colliding_discs(full: bool) -> Outcome:
         why = "the rest is vibration"
         after = kinetic[time > APART].mean()
         rows.append(at_least(f"{name}: kinetic energy after the rebound", after, 0.85, why))
-        why = "two free bodies: nothing acts on their centres but that nodes below 1e-12 of a cell's mass are dropped"
+        why = "two free bodies: nothing acts on their centres but that nodes below 1e-24 of a cell's mass are dropped"
         change = np.ptp(kept["translation"]) / kept["translation"].mean()
         rows.append(at_most(f"{name}: change of the discs' speed^2, apart", change, 1e-9, why))
 
