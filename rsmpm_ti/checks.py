@@ -77,7 +77,8 @@ def _annotations(kind: type) -> dict:
 def check_kinds(owner: str, data) -> None:
     """Raises SceneError for a field of a dataclass whose value is not of its kind; `owner` names the dataclass."""
     for field in dataclasses.fields(data):
-        value, wanted = getattr(data, field.name), _annotations(type(data))[field.name]
+        kind: typing.Any = type(data)
+        value, wanted = getattr(data, field.name), _annotations(kind)[field.name]
         if not fits(value, wanted):
             raise refuse(f"{owner}.{field.name}", value, phrase(wanted))
 

@@ -43,12 +43,13 @@ def static_state(scene: Scene, *, press: float = 8.0, hold: float = 4.0, cfl: fl
     drive = set_up(replace(scene, rock=rock, loading=loading, schedule=schedule))
     clock = drive.clock
     drive.advance(round(press * transit / clock.dt))
-    impulse, start, sigma = drive.survey.impulse, clock.time, 0.0
+    impulse, start, sigma = drive.survey.impulse, clock.time, np.zeros((1, 3, 3))
     for left in range(LOOKS, 0, -1):
         drive.advance(max(1, (clock.total - clock.step) // left))
         snapshot = take_snapshot(drive.sim, clock.time)
         sigma = sigma + snapshot.sigma / LOOKS
     forces = (drive.survey.impulse - impulse) / (clock.time - start)
+    assert loading.platens is not None and loading.width is not None
     axis = loading.platens[0].axis
     nominal = 0.5 * (forces[0, axis] - forces[1, axis]) / loading.width
     return Static(snapshot, sigma, float(nominal), clock.strain)

@@ -5,6 +5,7 @@ from pathlib import Path
 import numpy as np
 
 from rsmpm_ti.analysis.fracture import Fracture
+from rsmpm_ti.analysis.fragments import Fragment
 from rsmpm_ti.analysis.load_curve import load_at
 from rsmpm_ti.output.files import write_table
 from rsmpm_ti.records.snapshot import MODE_NAMES
@@ -19,7 +20,7 @@ def write_fracture(out: Path, fracture: Fracture, history: np.ndarray) -> None:
     write_table(out / "cracks.csv", _crack_columns(axes), rows)
 
     header = ("fragment", "particles", "mass_kg", "diameter_m", *(f"{a}_m" for a in axes), *(f"v{a}_m_s" for a in axes))
-    pieces = [*enumerate(fracture.fragments.pieces)]
+    pieces: list[tuple[int | str, Fragment]] = [*enumerate(fracture.fragments.pieces)]
     if fracture.fragments.dust is not None:
         pieces.append(("dust", fracture.fragments.dust))
     rows = ((name, f.particles, f.mass, f.diameter, *f.centroid, *f.velocity) for name, f in pieces)

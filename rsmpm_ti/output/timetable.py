@@ -23,8 +23,8 @@ class Timetable:
         return {"frame": self._next_frame, "vtu": self._next_vtu, "extra": self._extra, "failed": self._failed}
 
     def resume(self, state: dict[str, float]) -> None:
-        self._next_frame, self._next_vtu = state["frame"], state["vtu"]
-        self._extra, self._failed = state["extra"], state["failed"]
+        self._next_frame, self._next_vtu, self._extra = (int(state[name]) for name in ("frame", "vtu", "extra"))
+        self._failed = state["failed"]
 
     def frame_due(self, progress: float, failed: float) -> bool:
         """progress: share of the run done, 0 to 1; failed: particles failed so far."""

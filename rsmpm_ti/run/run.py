@@ -8,6 +8,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
@@ -66,7 +67,7 @@ def simulate(
         checkpoint_every=checkpoint_every, progress=progress,
     )  # fmt: skip
     seeds, kept = scene.particles(), None
-    if resume:
+    if resume and out is not None:
         from rsmpm_ti.run.checkpoint import read
 
         kept = read(Path(out), settings.identity(scene))
@@ -102,8 +103,9 @@ class Run:
     """
 
     def __init__(self, scene: Scene, seeds, out: Path | None, settings: Settings, kept=None):
-        self.scene, self.out, self.settings = scene, out, settings
-        self.writer = None
+        self.scene, self.settings = scene, settings
+        self.out: Any = out  # with its writer: asked for only where files are written
+        self.writer: Any = None
         self.compile_s = -time.perf_counter()
         if out is not None:  # first, since it gets ready while kernels compile here
             from rsmpm_ti.output.pictures import commission
@@ -127,7 +129,8 @@ class Run:
         self.sim, self.clock = self.drive.sim, self.drive.clock
         self.history = History(self.sim, self.clock, self.drive.survey)
         self.row_steps = max(1, self.clock.total // self.scene.schedule.rows)
-        self.frame_count, self.vtus = 0, []
+        self.frame_count = 0
+        self.vtus: list[tuple[float, str]] = []
         self.wall_before, self.resumed = 0.0, kept is not None
         self.interrupted = threading.Event()
         if self.writer is not None:
@@ -149,7 +152,8 @@ class Run:
 
     def go(self) -> Result:
         """Steps to the end of the scene, to Ctrl-C, SIGTERM or instability; writes; raises as `simulate`."""
-        stopped, failure = "", None
+        stopped = ""
+        failure: UnstableRun | SceneError | None = None
         try:
             with asked_to_stop(self.interrupted):
                 try:
@@ -251,7 +255,7 @@ class Run:
         history, events = self.history.table(), read_events(self.sim)
         snapshot = take_snapshot(self.sim, self.clock.time)
         fracture = measure_fracture(self.scene, history, events, snapshot)
-        summary = {}
+        summary: dict = {}
         summarise = partial(self._summarise, summary, history, events, fracture, speed, stopped)
         if self.out is None:
             summarise()

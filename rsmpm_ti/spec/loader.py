@@ -96,6 +96,7 @@ def _naming(settings: dict[str, str]):
 
 def _load(path: Path):
     spec = importlib.util.spec_from_file_location(f"rsmpm_ti_scene_{path.stem}", path)
+    assert spec is not None and spec.loader is not None  # of a file that is there
     module = importlib.util.module_from_spec(spec)
     try:
         spec.loader.exec_module(module)
@@ -200,7 +201,7 @@ def _readings(text: str):
 
 def _parse(key: str, text: str, wanted):
     """A text as what an annotation says: a number, a word, numbers separated by commas, or the name of a class."""
-    classes = {kind.__name__: kind for kind in members(wanted) if dataclasses.is_dataclass(kind)}
+    classes = {k.__name__: k for k in members(wanted) if isinstance(k, type) and dataclasses.is_dataclass(k)}
     if text in classes:
         try:
             return classes[text]()
@@ -225,7 +226,7 @@ def _with_field(owner, kind, key: str, path: list[str], text: str):
             raise SceneError(f"{short(key)}: {shown(name)} is no index; there are {len(owner)} entries, counted from 0")
         k = int(name)
         return (*owner[:k], _with_field(owner[k], entry_kinds(kind, len(owner))[k], key, rest, text), *owner[k + 1 :])
-    if not dataclasses.is_dataclass(owner):
+    if not dataclasses.is_dataclass(owner) or isinstance(owner, type):
         raise SceneError(f"{short(key)}: {shown(name)} is no field of a {type(owner).__name__}")
     names = [f.name for f in dataclasses.fields(owner)]
     if name not in names:

@@ -32,7 +32,9 @@ def family_of(kind: type) -> tuple[type, ...]:
         for annotation in typing.get_type_hints(owner).values():
             for alternatives in (annotation, *typing.get_args(annotation)):
                 if kind in members(alternatives) and len(members(alternatives)) > 1:
-                    return tuple(k for k in members(alternatives) if dataclasses.is_dataclass(k))
+                    return tuple(
+                        k for k in members(alternatives) if isinstance(k, type) and dataclasses.is_dataclass(k)
+                    )
     return (kind,)
 
 
