@@ -3,11 +3,13 @@
 import pytest
 import taichi as ti
 
+from rsmpm_ti.backend.field_memory import use_field_memory
 from rsmpm_ti.backend.taichi_patches import hasten_compiling
 
 
 def start(real, threads: int = 2) -> None:
     hasten_compiling()
+    use_field_memory()
     ti.init(
         arch=ti.cpu, default_fp=real, cpu_max_num_threads=threads, offline_cache=True, log_level=ti.ERROR,
         cfg_optimization=False,  # as in a run
