@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 import taichi as ti
 from taichi import _kernels
+from taichi.lang import impl
 
 from rsmpm_ti.backend.field_memory import IN_PLACE_OF, views
 
@@ -70,6 +71,7 @@ def test_sparse_fields_go_through_taichi():
 def test_fields_after_a_new_start_are_found_where_they_are(restart_taichi):
     for real in (ti.f64, ti.f32):
         restart_taichi(real)
+        assert "addresses_of_roots" not in vars(impl.get_runtime()), "none is kept from before, where others lay"
         field, wanted, _ = made("vectors apart")
         field.from_numpy(wanted)
         np.testing.assert_array_equal(as_taichi_says(field), wanted)
