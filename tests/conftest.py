@@ -6,7 +6,6 @@ import taichi as ti
 from rsmpm_ti.backend.field_memory import use_field_memory
 from rsmpm_ti.backend.taichi_patches import hasten_compiling
 
-
 FIRST = ("tests/run/test_resume.py",)
 """Files with tests of half a minute: begun last, they would keep one worker waiting for the other."""
 
