@@ -9,7 +9,7 @@ from rsmpm_ti.failure.nonlocal_fields import (
     read_crack_strains,
     smooth_stress,
 )
-from rsmpm_ti.failure.stress_update import excluded, start_failure
+from rsmpm_ti.failure.stress_update import start_failure
 from rsmpm_ti.fields.nonlocal_sums import MAX_NEW_CRACKS
 from rsmpm_ti.fields.stencil import coordinates
 from rsmpm_ti.rock.criteria import strengths
@@ -26,7 +26,7 @@ def evaluate_overload(sim: ti.template()):
             mean = mean_stress(sim, p)
             load = extreme_principals(mean)[0] / strengths(sim, p)[0]
             normal = principal_normal(mean)
-            if load >= 1.0 and not excluded(sim, p, normal):
+            if load >= 1.0 and sim.rock.averaging.own_decides(sim, p, normal) == 0:
                 particles.overload[p] = load
                 particles.history.crack_normal[p] = normal
                 base = sim.grid.base(coordinates(sim, p), sim.shape)

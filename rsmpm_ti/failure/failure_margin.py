@@ -12,7 +12,7 @@ import numpy as np
 import taichi as ti
 
 from rsmpm_ti.failure.nonlocal_fields import mean_stress, smooth_stress
-from rsmpm_ti.failure.stress_update import excluded, own_shear_load
+from rsmpm_ti.failure.stress_update import own_shear_load
 from rsmpm_ti.rock.criteria import load_factors, strengths
 from rsmpm_ti.rock.tensors import extreme_principals, principal_normal
 
@@ -25,9 +25,10 @@ def tensile_load(sim: ti.template(), p, own):
     """
     load = own
     if ti.static(sim.averaging):
-        load = ti.select(excluded(sim, p, principal_normal(sim.particles.sigma[p])), own, 0.0)
+        rule = sim.rock.averaging
+        load = ti.select(rule.own_decides(sim, p, principal_normal(sim.particles.sigma[p])) == 1, own, 0.0)
         mean = mean_stress(sim, p)
-        if not excluded(sim, p, principal_normal(mean)):
+        if rule.own_decides(sim, p, principal_normal(mean)) == 0:
             load = ti.max(load, extreme_principals(mean)[0] / strengths(sim, p)[0])
     return load
 

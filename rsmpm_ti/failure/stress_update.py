@@ -17,8 +17,8 @@ def record_failure(sim: ti.template(), p, mode, extremes, released, time):
     events.released[e] = released
     events.mode[e] = mode
     events.id[e] = particles.id[p]
-    if ti.static(particles.history.has_normal):
-        events.normal[e] = particles.history.crack_normal[p]
+    for column, variable in ti.static(events.of_history):
+        column[e] = variable[p]
 
 
 @ti.func
@@ -31,45 +31,22 @@ def update_stress(sim: ti.template(), p, L, dt):
     J = particles.J[p] * rock.elasticity.volume_ratio(dt * L)
     particles.J[p] = J
     particles.sigma[p] = rock.elasticity.stress(particles.sigma[p], dt * L)
-    lost = 0.0
-    if ti.static(particles.viscous):
-        rate = L.trace()
-        q = rock.viscosity.pressure(rate, sim.density / J, sim.grid.dx, sim.wave_speed)
-        if ti.static(particles.breaks):
-            q = ti.select(particles.mode[p] == 0, q, 0.0)  # none in failed rock (paper sec. 3.2)
-        particles.q[p] = q
-        lost = -dt * q * rate * particles.volume[p] * J
-    return lost
-
-
-@ti.func
-def excluded(sim: ti.template(), p, normal):
-    """Whether a crack with a normal within 45 degrees of a unit vector runs beside the particle."""
-    along = normal.dot(sim.particles.excluding_normal[p])
-    return 2.0 * along * along > 1.0
+    return rock.viscosity.update(sim, p, L.trace(), dt)
 
 
 @ti.func
 def own_shear_load(sim: ti.template(), load):
-    """Load factor in shear, of load factors of a particle's own stress.
-
-    With averaging, tension beyond the cut-off counts as the cut-off: what it does is for the mean stress to judge. It
-    would reach Mohr-Coulomb by itself, and rock on a flaw's face would slip where it ought to open.
-    """
-    most = load[0]
-    if ti.static(sim.averaging):
-        most = ti.min(load[0], sim.rock.criterion.tensile_strength)
-    return sim.rock.criterion.shear_load(most, load[1])
+    """Load factor in shear, of load factors of a particle's own stress."""
+    return sim.rock.criterion.shear_load(sim.rock.averaging.own_tension(sim, load[0]), load[1])
 
 
 @ti.func
 def failure_by_own_stress(sim: ti.template(), p, extremes):
-    """Mode by a particle's own stress: 0, 1 or 2. With a nonlocal mean, tension is judged by that unless excluded."""
+    """Mode by a particle's own stress: 0, 1 or 2. Tension may be for a mean stress to judge: nonlocal_mean.py."""
     load = load_factors(sim, p, extremes)
     mode = sim.rock.criterion.mode(load[0], load[1])
-    if ti.static(sim.averaging):
-        if mode == 1 and not excluded(sim, p, principal_normal(sim.particles.sigma[p])):
-            mode = ti.select(own_shear_load(sim, load) >= 1.0, 2, 0)
+    if mode == 1 and sim.rock.averaging.own_decides(sim, p, principal_normal(sim.particles.sigma[p])) == 0:
+        mode = ti.select(own_shear_load(sim, load) >= 1.0, 2, 0)
     return mode
 
 
@@ -86,8 +63,7 @@ def start_failure(sim: ti.template(), p, mode, normal, time):
     particles = sim.particles
     ti.atomic_min(sim.events.onset[None], time)
     particles.mode[p] = mode
-    if ti.static(particles.viscous):
-        particles.q[p] = 0.0
+    sim.rock.viscosity.stop(sim, p)
     return sim.rock.after_failure.begin(sim, p, mode, normal)
 
 

@@ -74,6 +74,10 @@ class Particles:
             # crack strain of the rock around, by which tensile strength is lost: as last averaged, and the largest
             self.crack_strain_nonlocal, self.crack_strain_max_nonlocal = ti.field(real, count), ti.field(real, count)
             real_fields += [self.excluding_normal, self.crack_strain_nonlocal, self.crack_strain_max_nonlocal]
+        # what is 0 in a particle at rest without stress, and what a particle that can break has besides
+        resting = [self.v, self.sigma, *([self.C] if self.affine else []), *([self.q] if self.viscous else [])]
+        self.resting_components = (*(c for field in resting for c in components(field)), *self.history.components)
+        self.modes = (self.mode,) if self.breaks else ()
         self.real_components = tuple(c for field in real_fields for c in components(field))
         self.whole_components = tuple(c for field in whole_fields for c in components(field))
         # cell key at the last sort and now, and room for sorting

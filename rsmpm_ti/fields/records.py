@@ -10,16 +10,18 @@ from rsmpm_ti.spec.scene import Scene
 class Events:
     """Failure events in the order in which they happen; at most one of each mode per particle."""
 
-    def __init__(self, scene: Scene, capacity: int, real):
+    def __init__(self, scene: Scene, capacity: int, real, history):
         self.count, self.by_mode = ti.field(ti.i32, ()), ti.field(ti.i32, 3)
         # when a particle first begins to lose strength: without fracture energy that is the first event
         self.onset = ti.field(ti.f64, ())
         self.onset[None] = np.inf
         self.names = ("time", "x", "mode", "sigma_1", "sigma_3", "released", "id")
+        self.of_history: tuple = ()  # pairs of a column and the variable of the law that it copies
         capacity = scene.rock.after_failure.max_events * capacity if scene.rock.criterion.breaks else 1
         if scene.rock.criterion.breaks and scene.rock.after_failure.oriented:
             self.normal = ti.Vector.field(scene.dim, real, capacity)  # unit vector across the crack
             self.names += ("normal",)
+            self.of_history = ((self.normal, history.crack_normal),)
         self.time, self.sigma_1 = ti.field(ti.f64, capacity), ti.field(real, capacity)
         self.sigma_3, self.released = ti.field(real, capacity), ti.field(real, capacity)
         self.x = ti.Vector.field(scene.dim, real, capacity)

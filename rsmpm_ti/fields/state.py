@@ -49,6 +49,7 @@ class Simulation:
         self.driven = self.force_field is not None
         self.grid = Grid(scene)
         self.drops = scene.domain.outside == "drop"
+        self.outside_is_sick = 0 if self.drops else 1
         count = sum(len(body.x) for body in seeds)
         if count >= 2**31:
             raise SceneError(f"{count} particles are more than 2^31 - 1; use a larger dx or fewer particles per axis")
@@ -57,7 +58,10 @@ class Simulation:
         self.nodes = Nodes(scene, self.grid, real, use_sparse_grid(scene, count))
         few = not gpu and math.prod(n - 2 * scene.domain.room for n in self.grid.nodes) < FEW_NODES
         self.nodes.serial = self.traversal.serial or self.traversal.ordered or few
-        self.events, self.ledger = Events(scene, count, real), Ledger(scene, self.traversal.count)
+        self.events, self.ledger = (
+            Events(scene, count, real, self.particles.history),
+            Ledger(scene, self.traversal.count),
+        )
         self.averaging = scene.rock.criterion.breaks and scene.rock.averaging.acts
         if self.averaging:
             self.means = NonlocalSums(scene, self.grid, real)

@@ -30,15 +30,6 @@ SWEEPS = 4
 
 
 @ti.func
-def softening_strain(sim: ti.template(), p):
-    """Crack strain by which a particle's crack has lost tensile strength: its own, or that of the rock around."""
-    strain = sim.particles.history.crack_strain_max[p][0]
-    if ti.static(sim.averaging):
-        strain = sim.particles.crack_strain_max_nonlocal[p]
-    return strain
-
-
-@ti.func
 def strength_left(sim: ti.template(), p):
     """What is left of the tensile strength across the crack and across the one at right angles, and of cohesion [Pa].
 
@@ -46,7 +37,7 @@ def strength_left(sim: ti.template(), p):
     """
     h, soft = sim.particles.history, sim.rock.after_failure.softening
     full = strengths(sim, p)
-    n = soft.ratio(softening_strain(sim, p), full[0], soft.G_f_I, sim.band)
+    n = soft.ratio(sim.rock.averaging.softening_strain(sim, p), full[0], soft.G_f_I, sim.band)
     t = soft.ratio(h.crack_strain_max[p][1], full[0], soft.G_f_I, sim.band)
     shear = soft.ratio(h.slip[p], full[1], soft.G_f_II, sim.band)
     if sim.particles.mode[p] == 2:
@@ -180,10 +171,7 @@ def crack_return(sim: ti.template(), p, G):
     particles, elasticity, h = sim.particles, sim.rock.elasticity, sim.particles.history
     trial = particles.sigma[p]
     before = elasticity.energy(trial) + spring_energy(sim, p)
-    if ti.static(sim.averaging):
-        particles.crack_strain_max_nonlocal[p] = ti.max(
-            particles.crack_strain_max_nonlocal[p], particles.crack_strain_nonlocal[p]
-        )
+    sim.rock.averaging.follow(sim, p)
     left = strength_left(sim, p)
     h.crack_normal[p] = rotated_vector(h.crack_normal[p], G)
     s = open_cracks(sim, p, in_frame(trial, h.crack_normal[p]), left)

@@ -83,22 +83,25 @@ class MohrCoulomb:
 
 
 @ti.func
+def strength_factor(sim: ti.template(), p):
+    """What multiplies a particle's cohesion and tensile strength: 1 in uniform rock."""
+    k = 1.0
+    if ti.static(sim.particles.varied):
+        k = sim.particles.strength[p]
+    return k
+
+
+@ti.func
 def strengths(sim: ti.template(), p):
     """Tensile strength and cohesion of a particle's rock before it cracked [Pa]."""
-    f_t, c = sim.rock.criterion.tensile_strength, sim.rock.criterion.cohesion
-    if ti.static(sim.particles.varied):
-        f_t *= sim.particles.strength[p]
-        c *= sim.particles.strength[p]
-    return ti.Vector([f_t, c])
+    k = strength_factor(sim, p)
+    return ti.Vector([sim.rock.criterion.tensile_strength * k, sim.rock.criterion.cohesion * k])
 
 
 @ti.func
 def load_factors(sim: ti.template(), p, extremes):
     """Extreme principal stresses as the criterion sees them: dividing by k is multiplying both strengths by it."""
-    load = extremes
-    if ti.static(sim.particles.varied):
-        load = extremes / sim.particles.strength[p]
-    return load
+    return extremes / strength_factor(sim, p)
 
 
 @ti.data_oriented

@@ -4,6 +4,7 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
+import taichi as ti
 
 from rsmpm_ti.checks import check_kinds, check_positive
 from rsmpm_ti.errors import refuse
@@ -12,13 +13,38 @@ MAX_CELLS = 64
 """Longest length of the mean [cells]; every node then sums 450 others along each axis."""
 
 
+@ti.data_oriented
 @dataclass(frozen=True, kw_only=True)
 class Local:
-    """Each particle's own stress and opening decide: what fails first then depends on cell size and edges."""
+    """Each particle's own stress and crack strain decide: what fails first then depends on cell size and edges."""
 
     acts = False
 
+    @ti.func
+    def own_decides(self, sim: ti.template(), p, normal):
+        """1 if a particle's own tension, with the larger in-plane stress along `normal`, may break it; else 0."""
+        return 1
 
+    @ti.func
+    def own_tension(self, sim: ti.template(), sigma_1):
+        """What of a particle's own largest stress counts in its check for shear."""
+        return sigma_1
+
+    @ti.func
+    def begin_crack(self, sim: ti.template(), p, strain):
+        """A crack begins in the particle, marked by a crack strain."""
+
+    @ti.func
+    def follow(self, sim: ti.template(), p):
+        """Before the response of a cracked particle in a step."""
+
+    @ti.func
+    def softening_strain(self, sim: ti.template(), p):
+        """Crack strain by which a particle's crack has lost tensile strength."""
+        return sim.particles.history.crack_strain_max[p][0]
+
+
+@ti.data_oriented
 @dataclass(frozen=True, kw_only=True)
 class Nonlocal:
     """The mean stress over a length of the rock decides on tension; its most overloaded particle fails first.
@@ -51,6 +77,35 @@ class Nonlocal:
             raise refuse("averaging.shade", self.shade, "in [0, 100] lengths")
         if not 0.1 <= self.wedge <= 89.9:
             raise refuse("averaging.wedge", self.wedge, "in [0.1, 89.9] degrees")
+
+    @ti.func
+    def own_decides(self, sim: ti.template(), p, normal):
+        """Only beside a crack whose normal is within 45 degrees: there the mean stress is that of the crack's tip."""
+        along = normal.dot(sim.particles.excluding_normal[p])
+        return ti.select(2.0 * along * along > 1.0, 1, 0)
+
+    @ti.func
+    def own_tension(self, sim: ti.template(), sigma_1):
+        """Tension beyond the cut-off counts as the cut-off: what it does is for the mean stress to judge.
+
+        It would reach Mohr-Coulomb by itself, and rock on a flaw's face would slip where it ought to open.
+        """
+        return ti.min(sigma_1, sim.rock.criterion.tensile_strength)
+
+    @ti.func
+    def begin_crack(self, sim: ti.template(), p, strain):
+        sim.particles.crack_strain_max_nonlocal[p] = strain
+
+    @ti.func
+    def follow(self, sim: ti.template(), p):
+        particles = sim.particles
+        largest = ti.max(particles.crack_strain_max_nonlocal[p], particles.crack_strain_nonlocal[p])
+        particles.crack_strain_max_nonlocal[p] = largest
+
+    @ti.func
+    def softening_strain(self, sim: ti.template(), p):
+        """That of the rock around."""
+        return sim.particles.crack_strain_max_nonlocal[p]
 
     @property
     def radius(self) -> float:

@@ -112,8 +112,7 @@ class Directional(AfterFailure):
         h.crack_normal[p] = normal
         if mode == 1:
             h.crack_strain_max[p] = ti.Vector([MIN_CRACK_STRAIN, 0.0])
-            if ti.static(sim.averaging):
-                sim.particles.crack_strain_max_nonlocal[p] = MIN_CRACK_STRAIN
+            sim.rock.averaging.begin_crack(sim, p, MIN_CRACK_STRAIN)
         else:
             h.slip[p] = ti.max(h.slip[p], MIN_CRACK_STRAIN)
         return 0.0

@@ -6,6 +6,7 @@ import taichi as ti
 
 from rsmpm_ti.checks import check_kinds
 from rsmpm_ti.errors import refuse
+from rsmpm_ti.rock.tensors import isotropic
 
 MOST_VISCOUS = 1e3
 """Largest constant of artificial viscosity; useful ones are about 1."""
@@ -35,6 +36,27 @@ class BulkViscosity:
         d = ti.min(rate, 0.0)
         return density * length * d * (self.c1 * length * d - self.c2 * wave_speed)
 
+    @ti.func
+    def update(self, sim: ti.template(), p, rate, dt):
+        """Set the pressure of a step of dt [s], and return the energy that it took [J]. None in failed rock (paper,
+        sec. 3.2)."""
+        particles, J = sim.particles, sim.particles.J[p]
+        q = self.pressure(rate, sim.density / J, sim.grid.dx, sim.wave_speed)
+        if ti.static(particles.breaks):
+            q = ti.select(particles.mode[p] == 0, q, 0.0)
+        particles.q[p] = q
+        return -dt * q * rate * particles.volume[p] * J
+
+    @ti.func
+    def stop(self, sim: ti.template(), p):
+        """The particle has failed."""
+        sim.particles.q[p] = 0.0
+
+    @ti.func
+    def added_to(self, sim: ti.template(), p, sigma):
+        """A packed stress with the viscous one."""
+        return sigma - isotropic(sim.particles.q[p], sigma.n)
+
 
 @ti.data_oriented
 @dataclass(frozen=True, kw_only=True)
@@ -42,3 +64,15 @@ class NoViscosity:
     """No artificial viscosity: the particles then hold no field for it."""
 
     acts = False
+
+    @ti.func
+    def update(self, sim: ti.template(), p, rate, dt):
+        return 0.0
+
+    @ti.func
+    def stop(self, sim: ti.template(), p):
+        pass
+
+    @ti.func
+    def added_to(self, sim: ti.template(), p, sigma):
+        return sigma

@@ -49,16 +49,10 @@ def park(sim: ti.template()):
             for d in ti.static(range(sim.dim)):
                 middle = sim.grid.origin[d] + 0.5 * (sim.grid.nodes[d] - 1) * sim.grid.dx
                 particles.u[p][d] = middle - particles.reference[p][d]
-            particles.v[p] = ti.Vector.zero(float, sim.dim)
-            particles.sigma[p] = ti.Vector.zero(float, particles.sigma.n)
-            if ti.static(particles.affine):
-                particles.C[p] = ti.Matrix.zero(float, sim.dim, sim.dim)
-            if ti.static(particles.viscous):
-                particles.q[p] = 0.0
-            if ti.static(particles.breaks):
-                particles.mode[p] = ti.max(particles.mode[p], 1)  # nothing looks for cracks in it any more
-            for component in ti.static(particles.history.components):
+            for component in ti.static(particles.resting_components):
                 component[p] = 0
+            for mode in ti.static(particles.modes):
+                mode[p] = ti.max(mode[p], 1)  # nothing looks for cracks in it any more
 
 
 def drop(sim: Simulation, before: Survey, dropped: Dropped) -> tuple[Survey, Dropped]:

@@ -65,10 +65,8 @@ def _survey(sim: ti.template()):
         xi = grid.local(particles.reference[p] + particles.u[p])
         sick = 0
         if left_domain(sim, xi):
-            if ti.static(sim.drops):
-                report.outside[None] += 1.0
-            else:
-                sick = 1
+            sick = sim.outside_is_sick
+            report.outside[None] += 1.0 - sick
         for d in ti.static(range(sim.dim)):
             if ti.math.isnan(v[d]) or ti.math.isinf(v[d]):
                 sick = 1
@@ -83,8 +81,8 @@ def _survey(sim: ti.template()):
         else:
             report.kinetic[None] += ti.cast(0.5 * m_p * v.dot(v), ti.f64)
             report.elastic[None] += ti.cast(particles.volume[p] * stored, ti.f64)
-            if ti.static(sim.confined):  # the pressure's work: p times the volume that the bodies gave way
-                report.work[None] += ti.cast(sim.confinement * particles.volume[p] * (sim.J_start - J), ti.f64)
+            # the confining pressure's work: p times the volume that the bodies gave way
+            report.work[None] += ti.cast(sim.confinement * particles.volume[p] * (sim.J_start - J), ti.f64)
             ti.atomic_max(report.speed[None], ti.cast(v.norm(), ti.f64))
             ti.atomic_min(report.J_min[None], ti.cast(J, ti.f64))
             ti.atomic_max(report.J_max[None], ti.cast(J_open, ti.f64))

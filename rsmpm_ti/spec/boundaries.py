@@ -27,10 +27,8 @@ def _check_plane(owner: str, boundary) -> None:
 @ti.func
 def beyond(x, dx, axis: ti.template(), side: ti.template(), position):
     """Whether a node lies on the plane or beyond it; a quarter cell absorbs round-off."""
-    held = x[axis] <= position + 0.25 * dx
-    if ti.static(side == "upper"):
-        held = x[axis] >= position - 0.25 * dx
-    return held
+    outward = ti.static(1.0 if side == "upper" else -1.0)
+    return outward * (x[axis] - position) >= -0.25 * dx
 
 
 @ti.data_oriented
@@ -74,19 +72,16 @@ class Platen:
 
     @ti.func
     def project(self, v, factor):
-        held = v
-        held[self.axis] = self.speed * factor
+        held, normal = v, self.speed * factor
         if ti.static(self.bonded):
-            for d in ti.static(range(v.n)):
-                if ti.static(d != self.axis):
-                    held[d] = 0.0
+            held = ti.Vector.zero(float, v.n)
         elif ti.static(self.friction > 0.0):
             # Coulomb on impulses: the tangential velocity change is at most friction x the normal one
-            tangent = held
+            tangent = v
             tangent[self.axis] = 0.0
-            normal_change = abs(held[self.axis] - v[self.axis])
             slip = tangent.norm(1e-30)
-            held -= tangent * ti.min(1.0, self.friction * normal_change / slip)
+            held -= tangent * ti.min(1.0, self.friction * abs(normal - v[self.axis]) / slip)
+        held[self.axis] = normal
         return held
 
 

@@ -68,7 +68,7 @@ MUTATIONS = {
         "vibration",
     ),
     "forgotten strength factor": (
-        [("rock/criteria.py", "load = extremes / sim.particles.strength[p]", "load = extremes")],
+        [("rock/criteria.py", "return extremes / strength_factor(sim, p)", "return extremes")],
         "weibull_size",
     ),
     "confined rock without stress out of the plane": (
