@@ -96,6 +96,6 @@ def nearly_incompressible(full: bool) -> Outcome:
 
 
 WAVE_SPEEDS = {0.45: 4980.0, 0.49: 10578.0, 0.499: 33055.0}
-"""sqrt((lambda + 2 mu)/rho) [m/s], from the note on references."""
+"""sqrt((lambda + 2 mu)/rho) [m/s]: docs/references.md, section 1."""
 
 CASES = (Case("incompressible", "5: Poisson's ratio of 0.45, 0.49, 0.499", nearly_incompressible),)

@@ -14,7 +14,7 @@ BRIDGE_LIMIT = 0.02
 """Largest share of a full node's mass that both faces of a slit may have in common.
 
 A slit of two cells at 45 degrees on a lattice leaves 1/64 = 0.016 on its diagonal nodes with linear functions, which
-the static reference solution shows to be a flaw; one of one cell leaves 0.11 and is not.
+a static solution shows to be a flaw (docs/references.md, section 15); one of one cell leaves 0.11 and is not.
 """
 
 

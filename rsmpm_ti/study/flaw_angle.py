@@ -82,10 +82,10 @@ def angle_rows(specimen: str, found: dict[float, Beginning], r_c: float) -> list
     for angle in HELD[specimen]:
         expected = predict(specimen, angle, r_c).angle
         if angle in found and math.isfinite(expected):
-            at, why = f"flaw at {angle:g} degrees [deg]", "physics.md A9, B7: what a strength law can claim"
+            at, why = f"flaw at {angle:g} degrees [deg]", "what a strength law can claim: docs/references.md, section 9"
             rows.append(difference(f"{specimen}: angle of first cracks, {at}", expected, found[angle].first, 10.0, why))
     along = found[ACROSS[specimen]].along
-    why = "from its middle, as sandstone discs do (physics.md B)"
+    why = "from its middle, as sandstone discs do: docs/references.md, section 18"
     rows.append(at_most(f"{specimen}: onset, along/half length, flaw across the load", along, MIDDLE, why))
     return rows
 

@@ -132,7 +132,7 @@ def finish(results: dict) -> Outcome:
     rows.append(at_most("directional: peak, (max - min)/mean", np.ptp(lab) / lab.mean(), 0.05, ZONE))
     sizes = np.array(list(peaks["paper"]))
     slope = np.polyfit(np.log(sizes), np.log(paper), 1)[0]
-    why = "physics.md A15: 0.35 to 0.5 where the notch's width follows dx"
+    why = "0.35 to 0.5 where the notch's width follows dx: docs/references.md, section 14"
     rows.append(relative("paper's rule: power of dx in the peak", 0.43, slope, 0.2, why))
 
     def draw(figure):

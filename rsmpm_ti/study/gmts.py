@@ -23,9 +23,10 @@ CUBE_SIF = np.array(
         (90.0, 0.0, 0.0, -1.0),
     )
 )
-"""Angle of the flaw from the platens, N_I, N_II, T* of an open crack of 15 mm in 50 x 100 mm, frictionless platens.
+"""Angle of the flaw from the platens, N_I, N_II, T* of an open crack of 15 mm in 50 x 100 mm, uniform end stress.
 
-By complex potentials and boundary collocation (physics.md A7). A crack along the load, 90 degrees, changes nothing.
+By complex potentials and boundary collocation: docs/references.md, section 7. Rigid platens change them by 0.0013 at
+most. A crack along the load, 90 degrees, changes nothing.
 """
 
 DISC_T = np.array(
@@ -42,7 +43,8 @@ DISC_T = np.array(
         (90.0, 3.547),
     )
 )
-"""Angle of the flaw from the line of the load, T* of a central crack with a/R = 0.3 in a disc (physics.md A8)."""
+"""Angle of the flaw from the line of the load, T* of a central crack with a/R = 0.3 in a disc: docs/references.md,
+section 8."""
 
 LEAST, MOST = 1e-4, 1.0
 """A critical distance is looked for between these shares of a."""

@@ -136,7 +136,7 @@ def test_rayleigh_speed_is_that_of_the_papers_rock():
     shear = np.sqrt(E / (2.0 * (1.0 + nu)) / density)
     strain = np.sqrt(E * (1.0 - nu) / ((1.0 + nu) * (1.0 - 2.0 * nu)) / density)
     stress = np.sqrt(E / (1.0 - nu**2) / density)
-    # shared/physics.md, table A: four digits after the point were not kept
+    # docs/references.md, section 1, to one digit after the point
     assert rayleigh_speed(shear, strain) == pytest.approx(1524.8, abs=0.05)
     assert rayleigh_speed(shear, stress) == pytest.approx(1519.5, abs=0.05)
 

@@ -117,7 +117,10 @@ def test_recorded_scene_runs_again_to_the_same_numbers(run_folder, tmp_path):
 
 
 def test_energy_ledger_balances_through_failure(run_folder):
-    """kinetic + elastic + dissipated = work + what the start gave, within 2 % of the work (design sec. 2)."""
+    """kinetic + elastic + dissipated = work + what the start gave, within 2 % of the work.
+
+    docs/references.md, section 16.
+    """
     summary = json.loads((run_folder / "summary.json").read_text())
     assert summary["failed_tension"] > 10
     assert summary["energy_balance_error_elastic"] < 0.02

@@ -32,7 +32,8 @@ def test_it_cracks_in_tension_at_the_flaw_and_begins_to_before_it_fails(result):
     assert np.isfinite(result.snapshot.sigma).all()
     begun, failed = ~np.isnan(result.snapshot.crack_angle), result.snapshot.failure_mode > 0
     assert (begun | ~failed).all() and begun.sum() > failed.sum()  # some have lost less than half of their strength
-    # the hoop tension of a round end opens cracks 70 to 97 degrees from the flaw (physics.md A7); coarse: 10 more
+    # the hoop tension of a round end opens cracks 70 to 97 degrees from the flaw (docs/references.md, section 9);
+    # coarse: 10 more
     angles = result.summary["first_crack_angles_deg"]
     assert len(angles) == 2 and all(60.0 < angle < 107.0 for angle in angles)
-    assert result.summary["energy_balance_error"] < 0.02  # as every scene: design sec. 2
+    assert result.summary["energy_balance_error"] < 0.02  # as every scene: docs/references.md, section 16

@@ -150,7 +150,7 @@ def test_pressure_on_a_free_surface_sends_the_wave_of_that_traction():
     state = take_snapshot(drive.sim, drive.clock.time)
     behind = (state.x[:, 1] > 25 * DX) & (state.x[:, 1] < 55 * DX)
     ahead = state.x[:, 1] < 2 * DX
-    # physics.md A1: the plateau's mean within 0.2 %; here its quarter wave behind the front is cut off, 1 % is margin
+    # the mean behind a front is exact, its ringing is not (docs/references.md, section 2); cut off here: 1 % is margin
     assert state.sigma[behind, 1, 1].mean() == pytest.approx(-P, rel=0.01)
     assert state.velocity[behind, 1].mean() == pytest.approx(-P / (DENSITY * C_P), rel=0.01)
     assert np.abs(state.sigma[ahead, 1, 1]).max() < 0.01 * P
@@ -234,7 +234,10 @@ def test_open_crack_is_dry():
 
 
 def test_axes_of_the_load_curve_reach_the_confined_strength():
-    """Mohr-Coulomb, compression positive: UCS + tan^2(45 + 20 degrees) p = 25.520 + 4.5989 p MPa (physics.md 0)."""
+    """Mohr-Coulomb, compression positive: UCS + tan^2(45 + 20 degrees) p = 25.520 + 4.5989 p MPa.
+
+    docs/references.md, section 1.
+    """
     long = replace(specimen(P), rock=ROCK, schedule=Schedule(strain_end=1e-2))
     assert load_limits(long, 32 * DX**2)[1] == pytest.approx(1.05 * (25.520e6 + 4.5989 * P), rel=1e-4)
     short = replace(specimen(P), rock=ROCK, schedule=Schedule(strain_end=1e-4))

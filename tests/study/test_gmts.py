@@ -83,7 +83,7 @@ def test_critical_distance_of_a_stress_never_reached_is_not_a_number():
 
 
 def test_interpolated_intensities_follow_those_of_an_infinite_plate():
-    """-cos^2, sin cos, cos 2b: the finite width adds 3 to 8 % (physics.md A7), and T at most 0.08."""
+    """-cos^2, sin cos, cos 2b: the finite width adds 3 to 8 % (docs/references.md, section 7), and T at most 0.08."""
     for angle in np.linspace(0.0, 90.0, 31):
         b = math.radians(angle)
         got = np.array(sif_cube(angle))

@@ -97,13 +97,13 @@ def wave(full: bool) -> Outcome:
     fronts, rows = [step_wave(shape, cells) for shape in (Linear(), QuadraticBSpline())], []
     for front in fronts:
         behind = (front.y > 0.05 * cells) & (front.y < (BEFORE - 0.15) * cells)
-        why = "the mean is conservation of momentum, 0.2 % in a 1-D run of the note; single particles ring by 27 %"
+        why = "the mean is conservation of momentum; the front rings by 27 %: docs/references.md, section 2"
         plateau = front.on_its_way[behind].mean()
         rows.append(relative(f"{front.name}: stress behind the front/(rho c v)", -1.0, plateau, 0.01, why))
         doubled = front.returned[front.y > (2.0 - AFTER + 0.15) * cells].mean()
         rows.append(relative(f"{front.name}: behind its reflection/(rho c v)", -2.0, doubled, 0.01, why))
         limit = 3.0 if front.name == "QuadraticBSpline" else 2.0
-        why = "dispersion delays short waves: 1.3 (B-spline 2.3) cells after 120 in the note, growing as the cube root"
+        why = "an Airy front is 1.4 to 1.7 (B-spline 1.7 to 2.2) cells late: docs/references.md, section 2"
         rows.append(difference(f"{front.name}: delay of the front [cells]", 0.0, front.delay, limit, why))
 
     def draw(figure):
@@ -249,7 +249,9 @@ FREE, FIXED = (), (Wall(axis=1, side="lower", position=0.0), Wall(axis=1, side="
 """Ends of the bar."""
 
 CURVATURE = {"Linear": 1.0 / 8.0, "QuadraticBSpline": 1.0 / 4.0}
-"""omega/(c k) = 1 - CURVATURE (k h)^2 at two particles per cell; linear elements with lumped mass would have 1/24."""
+"""omega/(c k) = 1 - CURVATURE (k h)^2 at two particles per cell and cfl 0.5; other steps add (1/4 - cfl^2)/24.
+
+docs/references.md, section 2. Linear elements with lumped mass would have 1/24."""
 
 
 def _frequencies(shape, order: str, waves: tuple[int, ...]) -> tuple[list, list]:
@@ -258,10 +260,10 @@ def _frequencies(shape, order: str, waves: tuple[int, ...]) -> tuple[list, list]
     found = [(length, vibrate(bar, length, 0.4, 5)) for length in waves]
     rows = []
     for length, vibration in found:
-        why = "terms of higher order and of the time step: 7 % at most by the one-step operator"
-        formula = CURVATURE[name] * (2.0 * math.pi / length) ** 2
+        why = "terms of fourth order, 1.7 % at 16 cells by the one-step operator; docs/references.md, section 2"
+        formula = (CURVATURE[name] + (0.25 - 0.4**2) / 24.0) * (2.0 * math.pi / length) ** 2
         quantity = f"{name}: frequency error, {length} cells per wave"
-        rows.append(relative(quantity, formula, 1.0 - vibration.speed, 0.15, why))
+        rows.append(relative(quantity, formula, 1.0 - vibration.speed, 0.03, why))
     for (_, coarse), (length, fine) in zip(found, found[1:], strict=False):
         why = "second order; the terms of fourth order are 1 % of it at 16 cells"
         ratio = (1.0 - coarse.speed) / (1.0 - fine.speed)
@@ -280,7 +282,7 @@ def _losses(waves: tuple[int, ...]) -> tuple[list, list]:
     found = [(length, vibrate(bar, length, 0.1, 4)) for length in waves]
     rows = []
     for length, vibration in found:
-        why = "two fits of one linear system; 5e-2, 7e-3 and 9e-4 at 8, 16 and 32 cells in the note"
+        why = "two fits of one linear system; 5e-2, 7e-3, 9e-4 at 8, 16, 32 cells: docs/references.md, section 2"
         quantity = f"Gimp, usl: loss per period, {length} cells per wave"
         rows.append(relative(quantity, theory(bar, length, 0.1)[1], vibration.loss, 0.01, why))
     length, slow = found[1]
