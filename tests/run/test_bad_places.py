@@ -169,7 +169,7 @@ def test_single_precision_is_refused_where_it_loses_places(refused, tmp_path):
 NOWHERE = {"HOME": "/dev/null", "MPLCONFIGDIR": "/dev/null/m", "TI_OFFLINE_CACHE_FILE_PATH": "/dev/null/t"}
 WITHOUT_CACHES = """
 import io, numpy as np
-from rsmpm_ti.run import start_taichi
+from rsmpm_ti.backend.start import start_taichi
 start_taichi("f64", "cpu", 1)
 import taichi as ti
 field = ti.field(float, 4)
