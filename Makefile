@@ -15,7 +15,7 @@ help:
 	@echo 'make disc        slit disc in diametral compression   -> renders/disc/'
 	@echo 'make intact      cube without a flaw                  -> renders/intact/'
 	@echo 'make test        the test suite'
-	@echo 'make lint        ruff check, ruff format --check'
+	@echo 'make lint        ruff check, ruff format --check, mypy'
 	@echo 'make validation  the longer tier of tests'
 	@echo 'make verify      the solver against exact solutions and finite elements; ARGS=--full for all of it'
 	@echo 'make hardcases   hard cases and their verdicts; ARGS=--full for all of it'
@@ -47,6 +47,7 @@ study: $(STAMP)
 lint: $(STAMP)
 	$(RUN) -m ruff check .
 	$(RUN) -m ruff format --check .
+	$(RUN) -m mypy
 
 # Candidates are executed, not just looked up: a pyenv shim may exist and fail. Debian's python3 comes without
 # ensurepip, and its `-m venv` would leave a .venv without pip behind.
@@ -71,5 +72,5 @@ $(STAMP): pyproject.toml
 	@touch $@
 
 clean:
-	rm -rf $(VENV) build dist *.egg-info .pytest_cache .ruff_cache .hypothesis
+	rm -rf $(VENV) build dist *.egg-info .pytest_cache .ruff_cache .mypy_cache .hypothesis
 	find rsmpm_ti scenes tests -name __pycache__ -type d -prune -exec rm -rf {} +

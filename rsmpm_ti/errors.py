@@ -7,6 +7,8 @@ class SceneError(ValueError):
     The message is one line: field, value, allowed range, and what to do. What a terminal would act on is escaped.
     """
 
+    result: object = None  # of what had run, where files could not be written any more
+
     def __init__(self, message: str):
         line = " ".join(message.split())
         super().__init__("".join(c if c.isprintable() else repr(c)[1:-1] for c in line))
@@ -21,6 +23,8 @@ class UnstableRun(RuntimeError):
 
     The message gives step, place, likely cause and remedy.
     """
+
+    result: object = None  # of what had run
 
 
 MOST_SHOWN = 200

@@ -132,6 +132,7 @@ def openings(cracks: list[Crack], events, snapshot: Snapshot, dx: float) -> list
     intact = cKDTree(snapshot.x[whole] - displacement)
     found = []
     for crack in cracks:
+        assert crack.course is not None  # in 2D
         x, ids = events.x[crack.events], events.id[crack.events]
         kept = np.isin(ids, snapshot.id)
         if not kept.any():

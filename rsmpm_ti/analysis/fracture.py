@@ -7,7 +7,7 @@ import numpy as np
 from rsmpm_ti.analysis.acoustic_emission import BValue, Catalogue, b_value, gather
 from rsmpm_ti.analysis.crack_bands import Crack, find_bands, measure_cracks, openings
 from rsmpm_ti.analysis.crack_path import rayleigh_speed
-from rsmpm_ti.analysis.flaw_tips import flaw_tips, initiations
+from rsmpm_ti.analysis.flaw_tips import FlawTip, flaw_tips, initiations
 from rsmpm_ti.analysis.fragments import Fragments, find_fragments
 from rsmpm_ti.analysis.numerical_fracture import parting_warning
 from rsmpm_ti.records.events import EventTable
@@ -32,10 +32,10 @@ class Fracture:
 
     def numbers(self) -> dict:
         """The part of summary.json that counts what broke, and warns of parting; None where not defined."""
-        plane = self.dim == 2
+        plane, courses = self.dim == 2, [crack.course for crack in self.cracks if crack.course is not None]
         return {
             "cracks": len(self.cracks),
-            "crack_length_m": float(sum(crack.course.length for crack in self.cracks)) if plane else None,
+            "crack_length_m": float(sum(course.length for course in courses)) if plane else None,
             "fragments": len(self.fragments.pieces),
             "largest_fragment_share": self.fragments.largest_share,
             "acoustic_events": len(self.acoustic),
@@ -58,7 +58,7 @@ def measure_fracture(scene: Scene, history: np.ndarray, events: EventTable, snap
     """
     spacing = max(scene.domain.dx / body.seeding.particles_per_axis for body in scene.bodies)
     shear_speed = float(np.sqrt(scene.rock.elasticity.mu / scene.density))
-    tips = ()
+    tips: tuple[FlawTip, ...] = ()
     if scene.dim == 2:
         tips = flaw_tips(tuple(slit for body in scene.bodies for slit in slits_of(body.region)))
     bands, graph = find_bands(events, spacing)

@@ -16,7 +16,7 @@ def loading_curve(history: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarr
     return middle, nominal_stress(history), strain - 0.5 * np.diff(strain, prepend=0.0)
 
 
-def load_at(history: np.ndarray, time: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+def load_at(history: np.ndarray, time: np.ndarray | float) -> tuple[np.ndarray, np.ndarray]:
     """Nominal stress [Pa] and strain [1] at times [s], shape [e], linear between rows; NaN where none is defined."""
     middle, stress, strain = loading_curve(history)
     out = []

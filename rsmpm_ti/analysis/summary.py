@@ -32,7 +32,7 @@ def summarise(scene: Scene, history: np.ndarray, events: EventTable, energy_star
     first = float(events.time[0]) if len(events) else np.inf
     onset = min(events.onset, first)
     before = history["time_s"] < onset
-    out = {
+    out: dict = {
         "confinement_Pa": scene.loading.confinement,
         "onset_stress_Pa": None,
         "onset_strain": None,
@@ -66,7 +66,8 @@ def _load_at(time: float, rows, middle, stress, strain) -> tuple[float | None, f
     k = np.flatnonzero(rows < time)[-4:]
     if len(k) < 4 or not np.isfinite(time) or not np.isfinite(stress[k]).all():
         return None, None
-    return tuple(float(np.polyval(np.polyfit(middle[k], values[k], 1), time)) for values in (stress, strain))
+    at = [float(np.polyval(np.polyfit(middle[k], values[k], 1), time)) for values in (stress, strain)]
+    return at[0], at[1]
 
 
 def _stress_numbers(stress, strain, middle, before, history, confinement) -> dict:
@@ -98,7 +99,7 @@ def _energy_numbers(history, before, energy_start) -> dict:
         - history["work_J"] - energy_start
     )  # fmt: skip
     work = np.abs(history["work_J"])
-    out = {"energy_balance_error": None, "energy_balance_error_elastic": None}
+    out: dict = {"energy_balance_error": None, "energy_balance_error_elastic": None}
     if len(work) and work.max() > 0.0:
         # a row early in the run divides a start-up residual by almost no work; it says nothing
         counted = work > ELASTIC_SHARE[0] ** 2 * (work[before].max() if before.any() else work.max())
@@ -115,7 +116,7 @@ def _crack_numbers(scene: Scene, events: EventTable) -> dict:
     slit, body = slits[0]
     spacing = scene.domain.dx / body.seeding.particles_per_axis
     pair = wings(events.x[events.mode == TENSION], slit, spacing)
-    out = {"initiation_angles_deg": [None if w is None or np.isnan(w.angle) else w.angle for w in pair]}
+    out: dict = {"initiation_angles_deg": [None if w is None or np.isnan(w.angle) else w.angle for w in pair]}
     if events.crack_angle is not None:
         tension = events.mode == TENSION
         angles = first_crack_angles(events.x[tension].astype(float), events.crack_angle[tension].astype(float), slit)

@@ -108,11 +108,11 @@ def centre_line(points: np.ndarray, axis: int, bin_size: float) -> tuple[np.ndar
 def half_turn_mismatch(pair: list[Wing | None], slit: Slit, axis: int, length: float, bin_size: float) -> float:
     """Largest lateral distance [m] between one wing and the other turned by 180 degrees, over the first `length` [m]
     along the loading axis; NaN unless both wings are that long."""
-    if any(wing is None for wing in pair):
-        return float("nan")
     centre = np.array(slit.centre[:2])
     lines = []
     for wing, sign in zip(pair, (1.0, -1.0), strict=True):
+        if wing is None:
+            return float("nan")
         local = sign * (wing.points - centre)
         rise = np.abs(local[:, axis] - sign * (wing.tip - centre)[axis])
         along, lateral = centre_line(local[rise <= length], axis, bin_size)

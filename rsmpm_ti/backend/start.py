@@ -12,10 +12,12 @@ from rsmpm_ti.errors import SceneError
 def start_taichi(precision: str, arch: str, threads: int | None):
     import taichi as ti
 
+    from rsmpm_ti.backend.field_memory import use_field_memory
     from rsmpm_ti.backend.taichi_patches import hasten_compiling
 
     ensure_kernel_cache()
     hasten_compiling()
+    use_field_memory()
     _forget_earlier_fields()
     real = ti.f64 if precision == "f64" else ti.f32
     # never ti.gpu: it crashes without Vulkan, or runs silently on a software Vulkan with wrong numbers

@@ -39,6 +39,7 @@ def print_head() -> None:
 def draw(path: Path, outcome: Outcome) -> None:
     from matplotlib.figure import Figure
 
+    assert outcome.draw is not None
     figure = Figure(figsize=(9.0, 5.5), dpi=120, layout="constrained")
     outcome.draw(figure)
     figure.savefig(path)

@@ -77,7 +77,7 @@ def write_checkpoint(folder: Path, arrays: dict[str, np.ndarray]) -> None:
     latest, previous = (Path(folder) / name for name in CHECKPOINTS)
     with complete(latest) as part:
         with open(part, "wb") as file:
-            np.savez(file, **arrays)
+            np.savez(file, **arrays)  # type: ignore[arg-type]  # no array is named like its keyword allow_pickle
             file.flush()
             os.fsync(file.fileno())
         if latest.exists():

@@ -12,7 +12,7 @@ import pickle
 import subprocess
 import sys
 import tempfile
-from concurrent.futures import ThreadPoolExecutor
+from concurrent.futures import Future, ThreadPoolExecutor
 from pathlib import Path
 
 import numpy as np
@@ -49,7 +49,8 @@ class Writer:
             )  # fmt: skip
         except OSError as error:
             raise SceneError(f"the process that paints and writes cannot be started: {error}") from None
-        self._sender, self._pending = ThreadPoolExecutor(max_workers=1), []
+        self._sender = ThreadPoolExecutor(max_workers=1)
+        self._pending: list[tuple[int, Future]] = []  # bytes of each order on its way
         self._order("open", wanted)
 
     def refilm(self, count: int) -> None:
@@ -78,7 +79,7 @@ class Writer:
         self._child.kill()  # which also frees a sender that waits for it to read
         self._child.wait()
         self._sender.shutdown()
-        for pipe in (self._child.stdin, self._child.stdout, self._errors):
+        for pipe in filter(None, (self._child.stdin, self._child.stdout, self._errors)):
             with contextlib.suppress(OSError):  # what was not sent cannot be
                 pipe.close()
 
@@ -92,6 +93,7 @@ class Writer:
         self._pending.append((len(message), self._sender.submit(self._send, message)))
 
     def _send(self, message: bytes) -> None:
+        assert self._child.stdin is not None
         self._child.stdin.write(message)
         self._child.stdin.flush()
 

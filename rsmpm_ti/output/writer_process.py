@@ -6,6 +6,7 @@ import pickle
 import sys
 import time
 from concurrent.futures import ThreadPoolExecutor
+from typing import Any
 
 from rsmpm_ti.backend.start import start_taichi
 from rsmpm_ti.output.files import write_checkpoint, write_pvd, write_vtu
@@ -22,7 +23,7 @@ class Desk:
     """Does orders; their names are its methods. Compressing and encoding go on beside painting, in order."""
 
     def __init__(self):
-        self.gallery = None
+        self.gallery: Any = None  # until the order to open has come
         self._files, self._pending = ThreadPoolExecutor(max_workers=1), []
 
     def open(self, wanted) -> None:

@@ -9,6 +9,7 @@ import time
 import zipfile
 from collections.abc import Callable
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
@@ -113,7 +114,7 @@ def particle_arrays(sim) -> dict[str, np.ndarray]:
     return {f"particle_{name}": field.to_numpy() for name, field in _particle_fields(sim)}
 
 
-def _particle_fields(sim) -> list[tuple[str, object]]:
+def _particle_fields(sim) -> list[tuple[str, Any]]:
     """Every stored component, and the cell of each particle at the last sort, on which the order of sums depends."""
     particles = sim.particles
     real = [(f"real_{k}", c) for k, c in enumerate(particles.real_components)]

@@ -60,6 +60,7 @@ class Estimate:
     @property
     def _share(self) -> float:
         """Share of a ramp that is over at that strain: e'T (s^3 - s^4/2) is the strain of a smooth step."""
+        assert isinstance(self.start, Ramp)
         reached = self.strain / (self.strain_rate * self.start.time)
         return 1.0 if reached >= 0.5 else _root(lambda s: s**3 - 0.5 * s**4 - reached, 0.0, 1.0)
 
@@ -138,8 +139,8 @@ def _specimen(scene) -> Box | Disc:
     else:
         region = scene.bodies[0].region
         whole = region.whole if isinstance(region, Difference) else region
-        kinds = (Box, Disc) if scene.dim == 2 else Box
-        if not isinstance(whole, kinds) or len(slits_of(region)) != len(getattr(region, "removed", ())):
+        fits = isinstance(whole, Box) or (isinstance(whole, Disc) and scene.dim == 2)
+        if not fits or len(slits_of(region)) != len(getattr(region, "removed", ())):
             problem = "it knows a box (in 2D a disc too) in which there may be slits"
         else:
             axis = loading.platens[0].axis
@@ -149,6 +150,7 @@ def _specimen(scene) -> Box | Disc:
     if problem:
         number = f"give a number in [1, {LARGEST:g}], 1 where waves matter"
         raise SceneError(f"loading.time_scale = 'auto' is refused: {problem}; {number}")
+    assert isinstance(whole, Box | Disc)
     return whole
 
 

@@ -149,9 +149,9 @@ class Loading:
         """(lower, upper) platen of the loading axis, the first two that face each other; they give the strain."""
         for lower in self.boundaries:
             for upper in self.boundaries:
-                same_axis = isinstance(lower, Platen) and isinstance(upper, Platen) and lower.axis == upper.axis
-                if same_axis and (lower.side, upper.side) == ("lower", "upper"):
-                    return lower, upper
+                if isinstance(lower, Platen) and isinstance(upper, Platen) and lower.axis == upper.axis:
+                    if (lower.side, upper.side) == ("lower", "upper"):
+                        return lower, upper
         return None
 
     @property
@@ -162,12 +162,14 @@ class Loading:
     @property
     def height(self) -> float:
         """Distance between the platens [m]."""
+        assert self.platens is not None
         lower, upper = self.platens
         return upper.position - lower.position
 
     @property
     def strain_rate(self) -> float:
         """Nominal axial strain rate [1/s], compression positive."""
+        assert self.platens is not None
         lower, upper = self.platens
         return (lower.speed - upper.speed) / self.height
 
@@ -258,7 +260,7 @@ class Scene:
     @cached_property
     def time_scale(self) -> float:
         """The number: `loading.time_scale`, or what 'auto' comes to. Raises SceneError where 'auto' has no meaning."""
-        if self.loading.time_scale == "auto":
+        if isinstance(self.loading.time_scale, str):
             return estimate(self).largest(self.loading.quasi_static)
         return self.loading.time_scale
 
@@ -280,6 +282,7 @@ class Scene:
     def t_end(self) -> float:
         if self.schedule.t_end is not None:
             return self.schedule.t_end
+        assert self.schedule.strain_end is not None
         at_full_speed = self.schedule.strain_end / self.loading.strain_rate
         start = self.loading.start
         return start.duration(at_full_speed) if isinstance(start, Ramp) else at_full_speed

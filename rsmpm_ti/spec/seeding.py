@@ -46,14 +46,16 @@ def _points(axes: list[np.ndarray]) -> np.ndarray:
 
 def _whole_cells(region, origin: np.ndarray, spacing: float) -> Seeds:
     """One particle per sub-cell whose centre lies inside, with the sub-cell's volume: edges become stairs."""
-    x = _points(_axes(*region.bounds(), origin, spacing))
+    lower, upper = region.bounds()
+    x = _points(_axes(lower, upper, origin, spacing))
     x = x[region.contains(x)]
     return Seeds(x, np.full(len(x), spacing ** x.shape[1]))
 
 
 def _cut_cells(region, origin: np.ndarray, spacing: float) -> Seeds:
     """One particle per sub-cell that has material, at the centroid of that material and with its volume."""
-    axes = _axes(*region.bounds(), origin, spacing)
+    lower, upper = region.bounds()
+    axes = _axes(lower, upper, origin, spacing)
     x, dim = _points(axes), len(axes)
     share, moment = _shares(region, x, spacing)
     _merge_slivers(share, moment, x, [len(axis) for axis in axes])

@@ -5,14 +5,12 @@ import math
 import numpy as np
 import pytest
 
-from rsmpm_ti import load_scene, simulate
-
-COARSE = {"dx": 2e-3, "length": 2e-3, "flaw_width": 6e-3, "strain_end": 6e-4, "time_scale": 40.0}
+DX = 2e-3
 
 
 @pytest.fixture(scope="module")
-def result():
-    return simulate(load_scene("cube_lab", **COARSE), threads=1)
+def result(coarse_run):
+    return coarse_run("cube_lab")
 
 
 def test_specimen_is_softer_than_rock_by_its_flaw(result):
@@ -30,7 +28,7 @@ def test_it_cracks_in_tension_at_the_flaw_and_begins_to_before_it_fails(result):
     events, centre = result.events, np.array([25e-3, 50e-3])
     assert len(events) > 0 and events.mode[0] == 1
     distance = np.hypot(*(events.x[0] - centre))
-    assert distance < 7.5e-3 + 2 * COARSE["dx"]  # the flaw's end, and the cells in which it is resolved
+    assert distance < 7.5e-3 + 2 * DX  # the flaw's end, and the cells in which it is resolved
     assert np.isfinite(result.snapshot.sigma).all()
     begun, failed = ~np.isnan(result.snapshot.crack_angle), result.snapshot.failure_mode > 0
     assert (begun | ~failed).all() and begun.sum() > failed.sum()  # some have lost less than half of their strength
