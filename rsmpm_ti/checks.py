@@ -195,7 +195,9 @@ def phrase(wanted) -> str:
     if typing.get_origin(bare) is typing.Literal:
         return _either(map(repr, typing.get_args(bare)))
     marks = getattr(wanted, "__metadata__", ())
-    bounds, unit, length = (next((m for m in marks if isinstance(m, kind)), None) for kind in (Interval, Unit, Len))
+    bounds = next((mark for mark in marks if isinstance(mark, Interval)), None)
+    unit = next((mark for mark in marks if isinstance(mark, Unit)), None)
+    length = next((mark for mark in marks if isinstance(mark, Len)), None)
     if typing.get_origin(bare) is tuple:
         *_, last = kinds = typing.get_args(bare)
         count = f"{length.min_length} to {length.max_length}" if length else ""
@@ -203,9 +205,11 @@ def phrase(wanted) -> str:
             return f"a list of {phrase(kinds[0])}" + (f", {count} of them" if count else "")
         size = phrase(kinds[0]).partition("number")[2]
         return f"{count if last is Ellipsis else len(kinds)} numbers separated by commas{size}".strip()
-    word = WORDS.get(bare) or getattr(bare, "__name__", shown(bare))
+    word = str(WORDS.get(bare) or getattr(bare, "__name__", shown(bare)))
     size = f" {unit.name}" if unit else ""
     if bounds:
+        low: typing.Any  # numbers, which the library's type leaves open
+        high: typing.Any
         left, low = ("[", bounds.ge) if bounds.gt is None else ("(", bounds.gt)
         right, high = ("]", bounds.le) if bounds.lt is None else (")", bounds.lt)
         word = word.replace("a ", "a positive ") if 0.0 < low < 1e-6 or (left, low) == ("(", 0.0) else word

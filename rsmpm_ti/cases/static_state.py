@@ -43,10 +43,11 @@ def static_state(scene: Scene, *, press: float = 8.0, hold: float = 4.0, cfl: fl
     drive = set_up(replace(scene, rock=rock, loading=loading, schedule=schedule))
     clock = drive.clock
     drive.advance(round(press * transit / clock.dt))
-    impulse, start, sigma = drive.survey.impulse, clock.time, 0.0
+    impulse, start, sigma = drive.survey.impulse, clock.time, np.zeros(())
     for left in range(LOOKS, 0, -1):
         drive.advance(max(1, (clock.total - clock.step) // left))
         snapshot = take_snapshot(drive.sim, clock.time)
         sigma = sigma + snapshot.sigma / LOOKS
-    forces = (drive.survey.impulse - impulse) / (clock.time - start)
-    return Static(snapshot, sigma, loading.load_cell.read(forces).stress, clock.strain)
+    forces, cell = (drive.survey.impulse - impulse) / (clock.time - start), loading.load_cell
+    assert cell is not None  # a scene with a height has two platens
+    return Static(snapshot, sigma, cell.read(forces).stress, clock.strain)

@@ -18,7 +18,7 @@ def write_table(path: Path, table: Table, source, dim: int = 2) -> None:
 
 def write_history(path: Path, history: np.ndarray) -> None:
     """history.csv: every column that the run recorded, one line per row."""
-    write_csv(path, history.dtype.names, history.tolist())
+    write_csv(path, history.dtype.names or (), history.tolist())
 
 
 def write_events(path: Path, events: EventTable) -> None:
@@ -33,9 +33,11 @@ def write_vtu(path: Path, snapshot: Snapshot) -> None:
     """
     import meshio
 
-    fields = {name: _as_point_data(a, snapshot.x.shape[1]) for name, a in PARTICLES.filled(snapshot, 3).items()}
+    fields = {
+        name: _as_point_data(np.asarray(a), snapshot.x.shape[1]) for name, a in PARTICLES.filled(snapshot, 3).items()
+    }
     for name, entries in snapshot.history.items():
-        fields[f"law_{name}" if name in fields else name] = _as_point_data(entries, snapshot.x.shape[1])
+        fields[f"law_{name}" if name in fields else name] = _as_point_data(entries, dim)
     mesh = meshio.Mesh(_padded(snapshot.x), [("vertex", np.arange(len(snapshot.x))[:, None])], point_data=fields)
     with complete(path) as part:
         meshio.write(part, mesh, file_format="vtu", binary=True, compression="zlib")

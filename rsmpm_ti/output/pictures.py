@@ -58,17 +58,14 @@ def load_limits(scene: Scene, volume: float) -> tuple[float | None, float | None
 
     That is an upper bound of the elastic load (Voigt); the strength bounds it too. Confinement adds its pressure.
     """
-    if scene.loading.platens is None or scene.loading.load_cell.width is None:
+    cell = scene.loading.load_cell
+    if scene.loading.platens is None or cell is None or cell.width is None:
         return None, None
     strain = abs(scene.schedule.strain_end or scene.loading.strain_rate * scene.t_end)
     if strain == 0.0:  # platens that stand still
         return None, None
-    load = (
-        scene.rock.elasticity.uniaxial_modulus(scene.dim)
-        * strain
-        * volume
-        / (scene.loading.height * scene.loading.load_cell.width)
-    )
+    modulus = scene.rock.elasticity.uniaxial_modulus(scene.dim)
+    load = modulus * strain * volume / (scene.loading.height * cell.width)
     load += scene.loading.confinement
     if isinstance(scene.rock.criterion, MohrCoulomb):
         load = min(load, 1.05 * scene.rock.criterion.strength(scene.loading.confinement))

@@ -46,10 +46,11 @@ class Table:
 
     def filled(self, source, dim: int) -> dict[str, list | np.ndarray]:
         """Name -> entries of every column, of what the table is made of."""
-        found = {}
+        found: dict[str, list | np.ndarray] = {}
         for column in self.columns:
             if not column.wanted(source):
                 continue
+            assert column.value is not None, f"{column.name} is only described, not made here"
             entries = column.value(source)
             if "{axis}" in column.name:
                 by_axis = np.asarray(entries).reshape(-1, dim).T

@@ -84,7 +84,8 @@ def restore(arrays: dict[str, np.ndarray], drive, history) -> dict:
 
 def observer_arrays(watches: list[Watch]) -> tuple[list[dict], dict[str, np.ndarray]]:
     """What observers remember: a plain part for each, and arrays by names that say whose they are."""
-    parts, arrays = [], {}
+    parts: list[dict] = []
+    arrays: dict[str, np.ndarray] = {}
     for k, watch in enumerate(watches):
         state = watch.state()
         found = {name: value for name, value in state["own"].items() if isinstance(value, np.ndarray)}

@@ -43,7 +43,8 @@ def _writes(run, view, fracture: Fracture, failure: Exception | None) -> list:
         run.painting_s += time.perf_counter() - start
 
     def checkpoint() -> None:
-        with contextlib.suppress(ObserverError if failure is not None else ()):  # which is told of already
+        told = (ObserverError,) if failure is not None else ()  # of that already
+        with contextlib.suppress(*told):
             timed(run.checkpoint)
 
     writes = [

@@ -5,6 +5,7 @@ import threading
 import time
 from collections.abc import Callable
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from rsmpm_ti.backend.start import start_taichi
 from rsmpm_ti.errors import ObserverError, SceneError, UnstableRun, refuse
@@ -15,6 +16,9 @@ from rsmpm_ti.run.finish import finish
 from rsmpm_ti.run.interrupt import asked_to_stop
 from rsmpm_ti.run.settings import CHECKPOINT_S, Settings
 from rsmpm_ti.spec.scene import Scene
+
+if TYPE_CHECKING:
+    from rsmpm_ti.output.writer import Writer
 
 
 def simulate(
@@ -51,13 +55,13 @@ def simulate(
     if resume and out is None:
         raise refuse("resume", resume, "False without an output folder", "give the folder of the run as `out`")
     seeds, kept = scene.particles(), None
+    if out is None:
+        return Run(scene, seeds, None, settings).go()
     if resume:
         from rsmpm_ti.run.checkpoint import read
 
         kept = read(Path(out), settings.identity(scene))
-    if out is not None:
-        out = prepare(scene, out, keep=kept is not None)
-    return Run(scene, seeds, out, settings, kept).go()
+    return Run(scene, seeds, prepare(scene, out, keep=kept is not None), settings, kept).go()
 
 
 class Run:
@@ -68,7 +72,7 @@ class Run:
 
     def __init__(self, scene: Scene, seeds, out: Path | None, settings: Settings, kept=None):
         self.scene, self.out, self.settings = scene, out, settings
-        self.writer = None
+        self.writer: Writer | None = None
         self.begun = time.perf_counter()
         if out is not None:  # first, since it gets ready while kernels compile here
             from rsmpm_ti.output.pictures import commission
@@ -106,7 +110,8 @@ class Run:
         from rsmpm_ti.run.checkpoint import Checkpoint
         from rsmpm_ti.solver.observer import Watch
 
-        own, last = [], []
+        own: list = []
+        last: list = []
         if self.writer is not None:
             from rsmpm_ti.output.observers import Frames, ParticleFiles
 
@@ -119,7 +124,8 @@ class Run:
 
     def go(self) -> Result:
         """Steps to the end of the scene, to Ctrl-C, SIGTERM or instability; writes; raises as `simulate`."""
-        stopped, failure = "", None
+        stopped = ""
+        failure: ObserverError | UnstableRun | SceneError | None = None
         try:
             with asked_to_stop(self.interrupted):
                 try:
@@ -180,6 +186,7 @@ class Run:
     def checkpoint(self) -> None:
         from rsmpm_ti.run.checkpoint import observer_arrays, take
 
+        assert self.writer is not None  # only a run that writes has checkpoints
         parts, arrays = observer_arrays(self.watches)
         progress = {"observers": parts, "wall_s": self.wall()}
         self.writer.checkpoint(take(self.drive, self.history, progress, self.settings.identity(self.scene)) | arrays)

@@ -96,6 +96,7 @@ def _naming(settings: dict[str, object]):
 
 def _load(path: Path):
     spec = importlib.util.spec_from_file_location(f"rsmpm_ti_scene_{path.stem}", path)
+    assert spec is not None and spec.loader is not None  # of a path that ends in .py there is always one
     module = importlib.util.module_from_spec(spec)
     try:
         spec.loader.exec_module(module)
@@ -246,7 +247,7 @@ def _with_field(owner, kind, key: str, path: list[str], text):
         entries = next(typing.get_args(part) for part in within(kind) if typing.get_origin(part) is tuple)
         entry = _with_field(owner[k], entries[0 if entries[-1] is Ellipsis else k], key, rest, text)
         return (*owner[:k], entry, *owner[k + 1 :])
-    if not dataclasses.is_dataclass(owner):
+    if not dataclasses.is_dataclass(owner) or isinstance(owner, type):
         raise SceneError(f"{short(key)}: {shown(name)} is no field of a {type(owner).__name__}")
     names = [f.name for f in dataclasses.fields(owner)]
     if name not in names:
