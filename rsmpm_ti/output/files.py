@@ -33,9 +33,8 @@ def write_vtu(path: Path, snapshot: Snapshot) -> None:
     """
     import meshio
 
-    fields = {
-        name: _as_point_data(np.asarray(a), snapshot.x.shape[1]) for name, a in PARTICLES.filled(snapshot, 3).items()
-    }
+    dim, columns = snapshot.x.shape[1], PARTICLES.filled(snapshot, 3)
+    fields = {name: _as_point_data(np.asarray(entries), dim) for name, entries in columns.items()}
     for name, entries in snapshot.history.items():
         fields[f"law_{name}" if name in fields else name] = _as_point_data(entries, dim)
     mesh = meshio.Mesh(_padded(snapshot.x), [("vertex", np.arange(len(snapshot.x))[:, None])], point_data=fields)

@@ -5,7 +5,7 @@ import threading
 import time
 from collections.abc import Callable
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import Any
 
 from rsmpm_ti.backend.start import start_taichi
 from rsmpm_ti.errors import ObserverError, SceneError, UnstableRun, refuse
@@ -16,9 +16,6 @@ from rsmpm_ti.run.finish import finish
 from rsmpm_ti.run.interrupt import asked_to_stop
 from rsmpm_ti.run.settings import CHECKPOINT_S, Settings
 from rsmpm_ti.spec.scene import Scene
-
-if TYPE_CHECKING:
-    from rsmpm_ti.output.writer import Writer
 
 
 def simulate(
@@ -72,7 +69,7 @@ class Run:
 
     def __init__(self, scene: Scene, seeds, out: Path | None, settings: Settings, kept=None):
         self.scene, self.out, self.settings = scene, out, settings
-        self.writer: Writer | None = None
+        self.writer: Any = None  # an output.writer.Writer where files are written, imported only then: it needs Taichi
         self.begun = time.perf_counter()
         if out is not None:  # first, since it gets ready while kernels compile here
             from rsmpm_ti.output.pictures import commission
@@ -186,7 +183,6 @@ class Run:
     def checkpoint(self) -> None:
         from rsmpm_ti.run.checkpoint import observer_arrays, take
 
-        assert self.writer is not None  # only a run that writes has checkpoints
         parts, arrays = observer_arrays(self.watches)
         progress = {"observers": parts, "wall_s": self.wall()}
         self.writer.checkpoint(take(self.drive, self.history, progress, self.settings.identity(self.scene)) | arrays)
