@@ -18,17 +18,20 @@ from pydantic_core import ArgsKwargs, PydanticCustomError, core_schema
 from rsmpm_ti.errors import SceneError, refuse, shown
 from rsmpm_ti.units import Unit
 
-LEAST, LARGEST = 1e-12, 1e18
+MIN_POSITIVE, MAX_SIZE = 1e-12, 1e18
 """Of what must be positive, in SI units: far beyond any specimen, and squares and ratios of such numbers are finite."""
 
-Positive = Interval(ge=LEAST, le=LARGEST)
-NotNegative = Interval(ge=0.0, le=LARGEST)
-Finite = Interval(ge=-LARGEST, le=LARGEST)
+Positive = Interval(ge=MIN_POSITIVE, le=MAX_SIZE)
+NotNegative = Interval(ge=0.0, le=MAX_SIZE)
+Finite = Interval(ge=-MAX_SIZE, le=MAX_SIZE)
 Seed = typing.Annotated[int, Interval(ge=0, le=2**63 - 1)]
 """A random seed that every record can hold."""
 
 STRICT = ConfigDict(strict=True, extra="forbid", allow_inf_nan=False)
 """No text is a number, no unknown keyword passes; an integer will do for a number, a bool will not."""
+
+RENAMED = {"Rock": {"averaging": "nonlocal_mean"}, "Nonlocal": {"shade": "exclusion"}}
+"""Fields of recorded scenes that have another name today, by class: records of before still load."""
 
 KNOWN: dict[str, type] = {}
 """Every class that a recorded scene may name: those of this package under `checked`."""
@@ -83,7 +86,8 @@ def _schema_with_type(kind: type, source, handler):
             return value
         if value.get("type") != kind.__name__:
             raise PydanticCustomError("other_type", "another type")
-        return {key: field for key, field in value.items() if key != "type"}
+        names = RENAMED.get(kind.__name__, {})
+        return {names.get(key, key): field for key, field in value.items() if key != "type"}
 
     schema = dict(handler.resolve_ref_schema(handler(source)))
     schema["strict"] = False  # of a dataclass: its fields stay strict, but a dict may stand for it
@@ -133,13 +137,13 @@ def refusal(owner: str, kind: type, values, error: ValidationError) -> SceneErro
     missing. `values`: what was to become an object of a class."""
     problems = error.errors(include_url=False)
     first = next((problem for problem in problems if problem["type"] == UNKNOWN), problems[0])
-    place, field, wanted, value = owner, (owner, values), kind, values
+    position, field, wanted, value = owner, (owner, values), kind, values
     for step in first["loc"]:  # names, indices, and the alternatives that pydantic tried, which are no place
         if isinstance(value, dict) and step in annotations(kind):
-            place, wanted, value = f"{place}.{step}", annotations(kind)[step], value.get(step)
-            field = (place, value)
+            position, wanted, value = f"{position}.{step}", annotations(kind)[step], value.get(step)
+            field = (position, value)
         elif isinstance(step, int) and isinstance(value, tuple) and step < len(value):
-            place, value = f"{place}[{step}]", value[step]  # of numbers the whole tuple is shown: `field` stays
+            position, value = f"{position}[{step}]", value[step]  # of numbers the whole tuple is shown: `field` stays
         if isinstance(value, dict):
             kind = KNOWN.get(str(value.get("type")), kind)
     last = first["loc"][-1] if first["loc"] else None
@@ -150,15 +154,15 @@ def refusal(owner: str, kind: type, values, error: ValidationError) -> SceneErro
     ]
     if first["type"] == UNKNOWN:
         names = sorted(annotations(kind))
-        return SceneError(f"{place}: {kind.__name__} has no field {shown(sorted(alike))}; it has {names}")
+        return SceneError(f"{position}: {kind.__name__} has no field {shown(sorted(alike))}; it has {names}")
     if first["type"] == MISSING and isinstance(last, str):
-        return SceneError(f"{place.removesuffix(f'.{last}')}: {kind.__name__} needs {', '.join(alike)}")
+        return SceneError(f"{position.removesuffix(f'.{last}')}: {kind.__name__} needs {', '.join(alike)}")
     if first["type"] != BY_HAND:
         return refuse(*field, phrase(wanted), remedy(wanted))
     cause = first["ctx"]["error"]
     if not isinstance(cause, SceneError):
-        return SceneError(f"{place}: {kind.__name__} cannot be built: {cause}")
-    return SceneError(f"{place}: {cause}") if first["loc"] else cause
+        return SceneError(f"{position}: {kind.__name__} cannot be built: {cause}")
+    return SceneError(f"{position}: {cause}") if first["loc"] else cause
 
 
 UNKNOWN, MISSING, BY_HAND = "unexpected_keyword_argument", "missing", "value_error"

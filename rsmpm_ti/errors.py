@@ -21,13 +21,13 @@ class ObserverError(SceneError):
 class UnstableRun(RuntimeError):
     """The run left the range in which its numbers mean something (exit status 3).
 
-    The message gives step, place, likely cause and remedy.
+    The message gives step, position, likely cause and remedy.
     """
 
     result: object = None  # of what had run
 
 
-MOST_SHOWN = 200
+MAX_SHOWN = 200
 """Characters of a refused value that are shown: enough to know it again."""
 
 
@@ -46,4 +46,4 @@ def shown(value: object) -> str:
 
 def short(text: str) -> str:
     """The beginning of a text from outside."""
-    return text if len(text) <= MOST_SHOWN else f"{text[:MOST_SHOWN]}..."
+    return text if len(text) <= MAX_SHOWN else f"{text[:MAX_SHOWN]}..."

@@ -161,7 +161,7 @@ def run(scene: Scene, options: argparse.Namespace) -> int:
                 f"{1e3 * p.time:.3f} ms  strain {100 * p.strain:.4f} %  {p.stress / 1e6:.3f} MPa  "
                 f"failed {p.failed_tension}+{p.failed_shear}  {speed:.1f} M/s"
             )
-            bar.update(task, completed=p.share, description=text)
+            bar.update(task, completed=p.fraction, description=text)
 
         result = simulate(
             scene, out=out, name=name, precision=options.precision, arch=options.arch, threads=options.threads,
@@ -183,9 +183,9 @@ def report(result) -> str:
     if s["onset_stress_Pa"] is not None and s["onset_stress_Pa"] != s["first_failure_stress_Pa"]:
         lines.append(f"strength begins to be lost at {s['onset_stress_Pa'] / 1e6:.3f} MPa; failed: open by half of it")
     if s["first_failure_stress_Pa"] is not None:
-        place = ", ".join(f"{1e3 * c:.2f}" for c in s["first_failure_position_m"])
+        position = ", ".join(f"{1e3 * c:.2f}" for c in s["first_failure_position_m"])
         stress = s["first_failure_stress_Pa"] / 1e6
-        lines.append(f"first failure: {s['first_failure_mode']} at {stress:.3f} MPa, ({place}) mm")
+        lines.append(f"first failure: {s['first_failure_mode']} at {stress:.3f} MPa, ({position}) mm")
     if s["peak_stress_Pa"] is not None:
         counts = f"failed {s['failed_tension']} in tension, {s['failed_shear']} in shear"
         lines.append(f"peak stress: {s['peak_stress_Pa'] / 1e6:.3f} MPa; {counts}")

@@ -25,7 +25,7 @@ def scattered(x: np.ndarray, seed: int = 0, amount: float = 0.1) -> np.ndarray:
 def strip(angle: float, length: float, width: float, start=(0.0, 0.0), kept: float = 1.0, seed: int = 0) -> np.ndarray:
     """Lattice places in a straight strip from `start` [m], `angle` degrees from +x, in order along it.
 
-    width in spacings; kept: share of the particles that failed, at random.
+    width in spacings; kept: fraction of the particles that failed, at random.
     """
     t = np.radians(angle)
     along = np.array([np.cos(t), np.sin(t)])
@@ -72,7 +72,7 @@ def history(stress_rate: float = 1e9, strain_rate: float = 0.05, end: float = 1e
 
 
 def snapshot(x, mode=None, displacement=None, velocity=None, volume=None) -> Snapshot:
-    """Particles at places x [n, dim] of the volume that SPACING gives."""
+    """Particles at positions x [n, dim] of the volume that SPACING gives."""
     return snapshot_of(
         x,
         mode,

@@ -94,7 +94,7 @@ def put(thing, path: list, value):
     return replace(thing, **{step: put(getattr(thing, step), rest, value)})
 
 
-def places(thing, path: tuple = ()):
+def positions(thing, path: tuple = ()):
     """Every path below a value of a scene, with the annotation of what stands there."""
     for field in dataclasses.fields(thing):
         wanted = typing.get_type_hints(type(thing))[field.name]
@@ -104,9 +104,9 @@ def places(thing, path: tuple = ()):
             for k, entry in enumerate(value):
                 yield (*here, k), wanted
                 if dataclasses.is_dataclass(entry):
-                    yield from places(entry, (*here, k))
+                    yield from positions(entry, (*here, k))
         elif dataclasses.is_dataclass(value):
-            yield from places(value, here)
+            yield from positions(value, here)
 
 
 def mentioned(wanted) -> set:
@@ -121,13 +121,13 @@ def home(kind: type) -> tuple[Scene, list]:
     for scene in bases():
         if kind is Scene:
             return scene, []
-        for path, _ in places(scene):
+        for path, _ in positions(scene):
             if type(at(scene, path)) is kind:
                 return scene, list(path)
     required = [f.name for f in dataclasses.fields(kind) if f.default is f.default_factory is dataclasses.MISSING]
     sample = kind(**{name: GIVEN[name] for name in required})
     for scene in bases():
-        for path, wanted in places(scene):
+        for path, wanted in positions(scene):
             if kind in mentioned(wanted) and dataclasses.is_dataclass(at(scene, path)):
                 with contextlib.suppress(SceneError):
                     changed = put(scene, list(path), sample)
@@ -186,11 +186,11 @@ def numbers_of(thing):
         for name in (*(f.name for f in dataclasses.fields(thing)), *derived):
             if isinstance(thing, Loading) and name in ("height", "strain_rate") and thing.platens is None:
                 continue
-            for place, number in numbers_of(getattr(thing, name)):
-                yield f"{kind.__name__}.{name}{place}", number
+            for position, number in numbers_of(getattr(thing, name)):
+                yield f"{kind.__name__}.{name}{position}", number
     elif isinstance(thing, (tuple, list)):
         for k, entry in enumerate(thing):
-            yield from ((f"[{k}]{place}", number) for place, number in numbers_of(entry))
+            yield from ((f"[{k}]{position}", number) for position, number in numbers_of(entry))
     elif isinstance(thing, (int, float)) and not isinstance(thing, bool):
         yield "", thing
 
@@ -201,9 +201,9 @@ SEEDED = 200_000
 
 def check_runnable(scene: Scene) -> None:
     """Independent of the code's own checks: an accepted scene is one whose every number means something."""
-    for place, number in numbers_of(scene):
-        free = place.endswith("MohrCoulomb.apex")  # the cone of a frictionless rock has none
-        assert math.isfinite(number) or free, f"{place} = {number}"
+    for position, number in numbers_of(scene):
+        free = position.endswith("MohrCoulomb.apex")  # the cone of a frictionless rock has none
+        assert math.isfinite(number) or free, f"{position} = {number}"
     rock = scene.rock
     E, nu = rock.elasticity.E, rock.elasticity.nu
     stiffness = E / (1 - nu**2) if rock.elasticity.plane_stress else E * (1 - nu) / ((1 + nu) * (1 - 2 * nu))

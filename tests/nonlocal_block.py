@@ -34,7 +34,7 @@ def block(cells, shape=QuadraticBSpline(), length=2.0 * DX, seeding=Lattice(), r
         title="block",
         domain=Domain(lower=(0.0, 0.0), upper=edge, dx=DX),
         bodies=(Body(region=Difference(whole=box, removed=removed) if removed else box, seeding=seeding),),
-        rock=Rock(**ROCK, averaging=Nonlocal(length=length)),
+        rock=Rock(**ROCK, nonlocal_mean=Nonlocal(length=length)),
         loading=Loading(boundaries=walls),
         schedule=Schedule(t_end=1e-6),
         shape=shape,
@@ -44,5 +44,5 @@ def block(cells, shape=QuadraticBSpline(), length=2.0 * DX, seeding=Lattice(), r
     return sim
 
 
-def places(sim: Simulation) -> np.ndarray:
+def positions(sim: Simulation) -> np.ndarray:
     return sim.particles.reference.to_numpy()

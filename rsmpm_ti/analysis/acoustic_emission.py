@@ -11,7 +11,7 @@ from rsmpm_ti.records.snapshot import TENSION
 BIN = 0.1
 """Width dM of the magnitude bins in which the completeness magnitude is looked for."""
 
-FEWEST = 20
+MIN_PARTICLES = 20
 """Fewer acoustic events than this above completeness give no b-value."""
 
 
@@ -20,12 +20,12 @@ class Catalogue:
     """Acoustic events in the order of time, shapes [a]; energies per metre of thickness in 2D."""
 
     time: np.ndarray  # of the first failure [s]
-    place: np.ndarray  # of the first failure, the hypocentre [m], [a, dim]
+    position: np.ndarray  # of the first failure, the hypocentre [m], [a, dim]
     energy: np.ndarray  # released by all its failures [J]
     magnitude: np.ndarray  # (2/3) log10(energy / 1 J); NaN where no energy was released
     failures: np.ndarray  # failure events in it
     particles: np.ndarray  # particles in it: one that fails twice counts once
-    shear_share: np.ndarray  # of its failures, by count
+    shear_fraction: np.ndarray  # of its failures, by count
 
     def __len__(self) -> int:
         return len(self.time)
@@ -55,12 +55,12 @@ def gather(events, spacing: float, shear_speed: float) -> Catalogue:
     np.log10(energy, out=magnitude, where=energy > 0.0)
     return Catalogue(
         time=events.time[first[order]],
-        place=events.x[first[order]],
+        position=events.x[first[order]],
         energy=energy,
         magnitude=2.0 / 3.0 * magnitude,
         failures=failures,
         particles=np.bincount(distinct, minlength=len(names))[order],
-        shear_share=shear / np.maximum(failures, 1),
+        shear_fraction=shear / np.maximum(failures, 1),
     )
 
 
@@ -82,13 +82,13 @@ def b_value(magnitude: np.ndarray) -> BValue | None:
     Bolt 1982). Bins start at the smallest magnitude: one cut by the catalogue's end would move M_c - dM/2 below it.
     """
     magnitude = magnitude[np.isfinite(magnitude)]
-    if len(magnitude) < FEWEST:
+    if len(magnitude) < MIN_PARTICLES:
         return None
     counts = np.bincount(((magnitude - magnitude.min()) / BIN).astype(int))
     least = magnitude.min() + BIN * int(np.argmax(counts))  # M_c - dM/2
     used = magnitude[magnitude >= least]
     n, mean = len(used), used.mean()
-    if n < FEWEST or mean == least:
+    if n < MIN_PARTICLES or mean == least:
         return None
     b = float(np.log10(np.e) / (mean - least))
     error = float(2.30 * b**2 * np.sqrt(np.sum((used - mean) ** 2) / (n * (n - 1))))

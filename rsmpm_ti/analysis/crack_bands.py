@@ -23,7 +23,7 @@ from rsmpm_ti.analysis.crack_path import (
 )
 from rsmpm_ti.analysis.flaw_tips import FlawTip, first_angle, nearest_tip
 from rsmpm_ti.analysis.neighbours import bands_of, neighbour_graph
-from rsmpm_ti.analysis.wing_cracks import FEWEST
+from rsmpm_ti.analysis.wing_cracks import MIN_PARTICLES
 from rsmpm_ti.records.snapshot import INTACT, TENSION, Snapshot
 
 
@@ -33,7 +33,7 @@ class Origin:
     angle from the flaw's continuation at which the crack leaves it [degrees], NaN for none."""
 
     time: float
-    place: np.ndarray
+    position: np.ndarray
     mode: int
     tip: str
     angle: float
@@ -79,7 +79,7 @@ def find_bands(events, spacing: float) -> tuple[list[np.ndarray], csr_array]:
     labels = bands_of(graph)
     order = np.argsort(labels, kind="stable")
     bands = np.split(order, np.cumsum(np.bincount(labels))[:-1])
-    bands = [band for band in bands if len(np.unique(events.id[band])) >= FEWEST]
+    bands = [band for band in bands if len(np.unique(events.id[band])) >= MIN_PARTICLES]
     return sorted(bands, key=lambda band: band[0]), graph
 
 
@@ -113,7 +113,7 @@ def _measure(events, band, graph, tips, spacing, time_scale) -> Crack:
         released=float(released.sum()),
         shear_energy=float(released[mode != TENSION].sum()),
         origin=Origin(
-            time=float(time[0]), place=x[0], mode=int(mode[0]), tip=tips[near].name if near >= 0 else "", angle=angle
+            time=float(time[0]), position=x[0], mode=int(mode[0]), tip=tips[near].name if near >= 0 else "", angle=angle
         ),
         length_at=length,
         speed_at=tip_speed(time, length, WINDOW * time_scale),

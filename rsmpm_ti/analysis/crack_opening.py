@@ -10,7 +10,7 @@ the other face, so the grid has smoothed the jump there."""
 BREADTH = 2.0
 """And within this distance along it, in cells."""
 
-FEWEST = 6
+MIN_PARTICLES = 6
 """A plane through fewer particles than this is no fit."""
 
 
@@ -45,7 +45,7 @@ def jumps(path: np.ndarray, intact: cKDTree, displacement: np.ndarray, dx: float
 
 def _intercept(s: np.ndarray, t: np.ndarray, u: np.ndarray, dx: float) -> np.ndarray | None:
     """Displacement [2] of a plane through one side's particles, at the path; None for too few or too thin a side."""
-    if len(s) < FEWEST or np.ptp(s) < dx or np.ptp(t) < dx:
+    if len(s) < MIN_PARTICLES or np.ptp(s) < dx or np.ptp(t) < dx:
         return None
     plane = np.stack([np.ones_like(s), s / dx, t / dx], axis=1)
     return np.linalg.lstsq(plane, u, rcond=None)[0][0]

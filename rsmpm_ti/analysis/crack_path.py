@@ -44,18 +44,18 @@ def centre_path(x: np.ndarray, graph: csr_array, spacing: float, seed: int = 0) 
     """
     first = int(np.argmax(distances(graph, seed)))
     along, before = dijkstra(graph, directed=False, indices=first, return_predecessors=True)
-    way = [int(np.argmax(along))]
-    while way[-1] != first:
-        way.append(int(before[way[-1]]))
-    count = max(2, round(along[way[0]] / (BIN * spacing)))
-    bins = np.minimum((along / along[way[0]] * count).astype(int), count - 1)
-    path = x[way]
+    route = [int(np.argmax(along))]
+    while route[-1] != first:
+        route.append(int(before[route[-1]]))
+    count = max(2, round(along[route[0]] / (BIN * spacing)))
+    bins = np.minimum((along / along[route[0]] * count).astype(int), count - 1)
+    path = x[route]
     for _ in range(ROUNDS):
         near = cKDTree(path).query(x)[0] <= REACH * spacing
         used, bin_of = np.unique(bins[near], return_inverse=True)
         path = np.stack([np.bincount(bin_of, x[near, a]) / np.bincount(bin_of) for a in range(2)], axis=1)
     if len(path) < 2 or path_length(path) == 0.0:
-        return x[[first, way[0]]]
+        return x[[first, route[0]]]
     for _ in range(ROUNDS):
         path[1:-1] = 0.25 * (path[:-2] + 2.0 * path[1:-1] + path[2:])
     ends = []

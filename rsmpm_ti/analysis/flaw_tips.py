@@ -15,7 +15,7 @@ class FlawTip:
     """One end of a flaw. name: "0+" is the end of the first flaw along its direction, "0-" the other."""
 
     name: str
-    place: np.ndarray  # [m], [2]
+    position: np.ndarray  # [m], [2]
     outward: np.ndarray  # unit vector from the flaw's middle to this end, [2]
     reach: float  # what breaks first within this distance broke at this end [m]
 
@@ -28,7 +28,7 @@ def flaw_tips(slits: tuple[Slit, ...]) -> tuple[FlawTip, ...]:
     return tuple(
         FlawTip(
             name=f"{k}{'+' if sign > 0.0 else '-'}",
-            place=np.array(slit.centre[:2]) + 0.5 * sign * slit.length * slit.direction,
+            position=np.array(slit.centre[:2]) + 0.5 * sign * slit.length * slit.direction,
             outward=sign * slit.direction,
             reach=TIP_RADIUS + 0.5 * slit.width,
         )
@@ -41,7 +41,7 @@ def nearest_tip(x: np.ndarray, tips: tuple[FlawTip, ...]) -> np.ndarray:
     """Index of the nearest tip to each place x [e, 2], -1 where that is beyond the tip's reach, [e]."""
     if not tips or len(x) == 0:
         return np.full(len(x), -1)
-    far = np.linalg.norm(x[:, None, :2] - np.stack([tip.place for tip in tips]), axis=2)
+    far = np.linalg.norm(x[:, None, :2] - np.stack([tip.position for tip in tips]), axis=2)
     nearest = far.argmin(axis=1)
     return np.where(far.min(axis=1) < np.array([tip.reach for tip in tips])[nearest], nearest, -1)
 
@@ -70,7 +70,7 @@ def initiations(events, bands: list[np.ndarray], tips: tuple[FlawTip, ...], hist
         band_of[band] = k
     entries = []
     for k, tip in enumerate(tips):
-        entry = {"flaw": int(tip.name[:-1]), "tip": tip.name, "tip_m": tip.place.tolist()}
+        entry = {"flaw": int(tip.name[:-1]), "tip": tip.name, "tip_m": tip.position.tolist()}
         entry |= dict.fromkeys(("stress_Pa", "strain", "time_s", "position_m", "angle_deg", "mode", "crack"))
         mine = np.flatnonzero((tip_of == k) & (band_of >= 0))
         if len(mine):

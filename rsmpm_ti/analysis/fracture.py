@@ -37,7 +37,7 @@ class Fracture:
             "cracks": len(self.cracks),
             "crack_length_m": float(sum(course.length for course in courses)) if plane else None,
             "fragments": len(self.fragments.pieces),
-            "largest_fragment_share": self.fragments.largest_share,
+            "largest_fragment_share": self.fragments.largest_fraction,
             "acoustic_events": len(self.acoustic),
             "b_value": self.b.b if self.b else None,
             "b_value_error": self.b.error if self.b else None,

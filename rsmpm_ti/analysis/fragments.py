@@ -35,7 +35,7 @@ class Fragments:
     total_mass: float
 
     @property
-    def largest_share(self) -> float | None:
+    def largest_fraction(self) -> float | None:
         """Mass of the largest fragment over that of the whole specimen."""
         return self.pieces[0].mass / self.total_mass if self.pieces and self.total_mass > 0.0 else None
 

@@ -15,7 +15,10 @@ NEIGHBOURS = 1.25
 
 
 def parted(scene: Scene, snapshot: Snapshot) -> np.ndarray:
-    """Places [m], [k, dim], in the middle of unbroken neighbours that nothing holds together any more, widest first."""
+    """Positions [m], [k, dim], in the middle of unbroken neighbours that nothing holds together any more.
+
+    The widest gap comes first.
+    """
     spacing = max(scene.domain.dx / body.seeding.particles_per_axis for body in scene.bodies)
     bridge, near = scene.shape.crack_band * scene.domain.dx, NEIGHBOURS * spacing
     finite = np.isfinite(snapshot.x).all(axis=1)  # not so at the end of a run that became unstable
@@ -32,12 +35,12 @@ def parted(scene: Scene, snapshot: Snapshot) -> np.ndarray:
 
 def parting_warning(scene: Scene, snapshot: Snapshot) -> str:
     """One line about numerical fracture at the end of a run, or nothing."""
-    places = parted(scene, snapshot)
-    if not len(places):
+    positions = parted(scene, snapshot)
+    if not len(positions):
         return ""
     return (
-        f"{len(places)} pairs of unbroken neighbours are farther apart than {scene.shape.crack_band:g} cells, what "
-        f"{type(scene.shape).__name__} bridges, the widest at {np.array2string(1e3 * places[0], precision=3)} mm: the "
-        f"rock there has parted by its discretisation, not by its strength; end the run earlier, or take a wider shape "
-        f"function"
+        f"{len(positions)} pairs of unbroken neighbours are farther apart than {scene.shape.crack_band:g} cells, what "
+        f"{type(scene.shape).__name__} bridges, the widest at {np.array2string(1e3 * positions[0], precision=3)} mm: "
+        f"the rock there has parted by its discretisation, not by its strength; end the run earlier, or take a wider "
+        f"shape function"
     )

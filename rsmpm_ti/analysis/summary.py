@@ -11,8 +11,8 @@ from rsmpm_ti.records.snapshot import MODE_NAMES, TENSION
 from rsmpm_ti.spec.regions import slits_of
 from rsmpm_ti.spec.scene import Scene
 
-ELASTIC_SHARE = (0.2, 0.9)
-"""Modulus and energy error are read between these shares of the time to first failure."""
+ELASTIC_RANGE = (0.2, 0.9)
+"""Modulus and energy error are read between these fractions of the time to first failure."""
 
 SYMMETRY_LENGTH = 15e-3
 """The two wings are compared over this length [m]."""
@@ -77,7 +77,7 @@ def _stress_numbers(stress, strain, middle, before, history, confinement) -> dic
         return out
     out["peak_stress_Pa"] = float(np.abs(stress).max() * np.sign(stress[np.abs(stress).argmax()]))
     end = middle[before][-1] if before.any() else 0.0
-    elastic = before & (middle > ELASTIC_SHARE[0] * end) & (middle < ELASTIC_SHARE[1] * end)
+    elastic = before & (middle > ELASTIC_RANGE[0] * end) & (middle < ELASTIC_RANGE[1] * end)
     if elastic.sum() >= 3 and np.ptp(strain[elastic]) > 0.0:  # not of platens that stand still
         out["apparent_modulus_Pa"] = float(np.polyfit(strain[elastic], stress[elastic], 1)[0])
     difference = np.abs(history["stress_top_Pa"] - history["stress_bottom_Pa"])
@@ -102,7 +102,7 @@ def _energy_numbers(history, before, energy_start) -> dict:
     out: dict = {"energy_balance_error": None, "energy_balance_error_elastic": None}
     if len(work) and work.max() > 0.0:
         # a row early in the run divides a start-up residual by almost no work; it says nothing
-        counted = work > ELASTIC_SHARE[0] ** 2 * (work[before].max() if before.any() else work.max())
+        counted = work > ELASTIC_RANGE[0] ** 2 * (work[before].max() if before.any() else work.max())
         out["energy_balance_error"] = float((np.abs(residual) / work)[counted].max())
         if (counted & before).any():
             out["energy_balance_error_elastic"] = float((np.abs(residual) / work)[counted & before].max())

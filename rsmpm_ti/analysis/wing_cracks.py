@@ -14,7 +14,7 @@ TIP_RADIUS = 3.0e-3
 FIT_LENGTH = 3.0e-3
 """The initiation angle is fitted over this length from the first failed particle [m]."""
 
-FEWEST = 6
+MIN_PARTICLES = 6
 """Fewer failed particles than this make no line."""
 
 
@@ -53,7 +53,7 @@ def leaving_angle(points: np.ndarray, start: np.ndarray, outward: np.ndarray) ->
     """Angle between `outward` and the line fitted to a crack's places within FIT_LENGTH of its start, degrees in
     [0, 180]; NaN for fewer than FEWEST such places. points [e, 2], start [2] [m]; outward: unit vector [2]."""
     close = points[np.linalg.norm(points - start, axis=1) < FIT_LENGTH]
-    if len(close) < FEWEST:
+    if len(close) < MIN_PARTICLES:
         return float("nan")
     centred = close - close.mean(axis=0)
     direction = np.linalg.svd(centred, full_matrices=False)[2][0]
@@ -84,8 +84,8 @@ def first_crack_angles(x: np.ndarray, normal: np.ndarray, slit: Slit) -> list[fl
     near = [np.flatnonzero(np.linalg.norm(local - end, axis=1) < TIP_RADIUS + 0.5 * slit.width) for end in ends]
     angles, half = [], 0.5 * (slit.length - slit.width)
     for k in near:
-        first = crack_directions(local[k[:FEWEST]], normal[k[:FEWEST]], half)
-        angles.append(float(first.mean()) if len(first) == FEWEST else float("nan"))
+        first = crack_directions(local[k[:MIN_PARTICLES]], normal[k[:MIN_PARTICLES]], half)
+        angles.append(float(first.mean()) if len(first) == MIN_PARTICLES else float("nan"))
     return angles
 
 

@@ -36,12 +36,17 @@ def views(field) -> list[np.ndarray] | None:
     roots = vars(runtime).setdefault("addresses_of_roots", {})  # `ti.init` makes another runtime
     found, shape, kind = [], field.shape, np.dtype(to_numpy_type(field.dtype))
     for member in field._get_field_members():
-        place = member.ptr.snode()
-        cell = place.parent
+        position = member.ptr.snode()
+        cell = position.parent
         root = None if cell is None else cell.parent
-        if root is None or root.type != core.SNodeType.root or cell.type != core.SNodeType.dense or any(place.offset):
+        if (
+            root is None
+            or root.type != core.SNodeType.root
+            or cell.type != core.SNodeType.dense
+            or any(position.offset)
+        ):
             return None
-        tree, offset = root.get_snode_tree_id(), cell.offset_bytes_in_parent_cell + place.offset_bytes_in_parent_cell
+        tree, offset = root.get_snode_tree_id(), cell.offset_bytes_in_parent_cell + position.offset_bytes_in_parent_cell
         if tree not in roots:
             roots[tree] = _address(ScalarField(member), len(shape)) - offset
         strides = [cell.cell_size_bytes * math.prod(shape[d + 1 :]) for d in range(len(shape))]

@@ -50,7 +50,7 @@ class Naive:
             self.node_f[i] = ti.Vector([0.0, 0.0])
 
     @ti.func
-    def place(self, p):
+    def position(self, p):
         """Base node of a particle, its weights [width, 2], and their gradients."""
         xi = self.x[p] * self.inv_dx
         base = ti.floor(xi - self.shift).cast(int)

@@ -9,7 +9,7 @@ from pathlib import Path
 from statistics import median
 
 NO_PICTURES = ("--frames", "0", "--no-movie", "--set", "output.vtu=0")
-WAYS = {
+VARIANTS = {
     "as it is": (),
     "no frames, movie, VTU": NO_PICTURES,
     "the same, deterministic": (*NO_PICTURES, "--deterministic"),
@@ -31,15 +31,15 @@ def one(scene: str, options: list[str]) -> dict[str, float]:
 
 def runs(scene: str, quick: bool, rounds: int) -> str:
     """Medians over rounds [s], and the run's ratio to the one without pictures in the same round: median, min, max."""
-    base, seen = ["--quick"] if quick else [], {way: [] for way in WAYS}
+    base, seen = ["--quick"] if quick else [], {variant: [] for variant in VARIANTS}
     for _ in range(rounds):
-        for way, options in WAYS.items():
-            seen[way].append(one(scene, [*base, *options]))
+        for variant, options in VARIANTS.items():
+            seen[variant].append(one(scene, [*base, *options]))
     columns = list(seen["as it is"][0])
     lines = [f"{scene}, {rounds} rounds in turn, seconds", f"{'':<24}" + "".join(f"{c:>19}" for c in columns)]
     lines[1] += "   run over no pictures"
-    for way, found in seen.items():
+    for variant, found in seen.items():
         medians = "".join(f"{median(f[c] for f in found):>19.1f}" for c in columns)
         ratios = [f["run"] / g["run"] for f, g in zip(found, seen["no frames, movie, VTU"], strict=True)]
-        lines.append(f"{way:<24}{medians}   {median(ratios):.2f} ({min(ratios):.2f}-{max(ratios):.2f})")
+        lines.append(f"{variant:<24}{medians}   {median(ratios):.2f} ({min(ratios):.2f}-{max(ratios):.2f})")
     return "\n".join(lines)

@@ -7,7 +7,7 @@ from rsmpm_ti.failure.nonlocal_fields import (
     mean_stress,
     near_overloaded,
     read_crack_strains,
-    smooth_stress,
+    sum_nonlocal,
 )
 from rsmpm_ti.failure.stress_update import start_failure
 from rsmpm_ti.fields.nonlocal_sums import MAX_NEW_CRACKS
@@ -22,16 +22,16 @@ def evaluate_overload(sim: ti.template()):
     particles = sim.particles
     for p in particles.mode:
         particles.overload[p] = 0.0
-        if sim.means.any_overloaded[None] == 1 and particles.mode[p] == 0 and near_overloaded(sim, p):
+        if sim.nonlocal_sums.any_overloaded[None] == 1 and particles.mode[p] == 0 and near_overloaded(sim, p):
             mean = mean_stress(sim, p)
             load = extreme_principals(mean)[0] / strengths(sim, p)[0]
             normal = principal_normal(mean)
-            if load >= 1.0 and sim.rock.averaging.own_decides(sim, p, normal) == 0:
+            if load >= 1.0 and sim.rock.nonlocal_mean.own_decides(sim, p, normal) == 0:
                 particles.overload[p] = load
                 particles.history.crack_normal[p] = normal
                 base = sim.grid.base(coordinates(sim, p), sim.shape)
                 for offset in ti.static(sim.stencil):
-                    ti.atomic_max(sim.means.peak[base + ti.Vector(offset)], load)
+                    ti.atomic_max(sim.nonlocal_sums.peak[base + ti.Vector(offset)], load)
 
 
 @ti.kernel
@@ -45,21 +45,21 @@ def crack_most_overloaded(sim: ti.template(), time: ti.f64):
             base = sim.grid.base(coordinates(sim, p), sim.shape)
             most = load
             for offset in ti.static(sim.stencil):
-                most = ti.max(most, sim.means.peak[base + ti.Vector(offset)])
+                most = ti.max(most, sim.nonlocal_sums.peak[base + ti.Vector(offset)])
             if load >= most:
-                k = ti.atomic_add(sim.means.count[None], 1)
+                k = ti.atomic_add(sim.nonlocal_sums.count[None], 1)
                 if k < MAX_NEW_CRACKS:
-                    sim.means.x[k] = particles.reference[p] + particles.u[p]
-                    sim.means.normal[k] = particles.history.crack_normal[p]
-                    lost = start_failure(sim, p, 1, particles.history.crack_normal[p], time)
-                    sim.ledger.released[0] += ti.cast(particles.volume[p] * lost, ti.f64)
+                    sim.nonlocal_sums.x[k] = particles.reference[p] + particles.u[p]
+                    sim.nonlocal_sums.normal[k] = particles.history.crack_normal[p]
+                    dissipated = start_failure(sim, p, 1, particles.history.crack_normal[p], time)
+                    sim.ledger.released[0] += ti.cast(particles.volume[p] * dissipated, ti.f64)
 
 
 @ti.kernel
 def exclude(sim: ti.template()):
     """Mark what lies beside the cracks that have just begun."""
-    particles, new_cracks = sim.particles, sim.means
-    radius, slope = ti.static(sim.rock.averaging.radius, sim.rock.averaging.slope)
+    particles, new_cracks = sim.particles, sim.nonlocal_sums
+    radius, slope = ti.static(sim.rock.nonlocal_mean.radius, sim.rock.nonlocal_mean.slope)
     count = ti.min(new_cracks.count[None], MAX_NEW_CRACKS)
     for p in particles.mode:
         if particles.mode[p] == 0:
@@ -74,9 +74,9 @@ def exclude(sim: ti.template()):
 
 def track_cracks(sim, time: float) -> None:
     """The tensile check by the mean stress, after a step, and the openings by which cracks lose strength."""
-    smooth_stress(sim)
+    sum_nonlocal(sim)
     read_crack_strains(sim)
-    mark_overloaded(sim, sim.means.weakest)
+    mark_overloaded(sim, sim.nonlocal_sums.weakest)
     evaluate_overload(sim)
     crack_most_overloaded(sim, time)
     exclude(sim)

@@ -4,14 +4,14 @@ Load factors of the stress that decides on failure, with strengths k sigma_t and
 
     tension = sigma_1/(k sigma_t),    shear = ((sigma_1 - sigma_3)/2 + (sigma_1 + sigma_3)/2 sin(phi))/(k c cos(phi)),
 
-the terms of eq. 11 and 12 of the paper, each 1 at failure; margin = 1 - max(tension, shear, 0). With averaging, shear
-is of sigma_1 no greater than the tensile strength, as in the check.
+the terms of eq. 11 and 12 of the paper, each 1 at failure; margin = 1 - max(tension, shear, 0). With a nonlocal mean,
+shear is of sigma_1 no greater than the tensile strength, as in the check.
 """
 
 import numpy as np
 import taichi as ti
 
-from rsmpm_ti.failure.nonlocal_fields import mean_stress, smooth_stress
+from rsmpm_ti.failure.nonlocal_fields import mean_stress, sum_nonlocal
 from rsmpm_ti.failure.stress_update import own_shear_load
 from rsmpm_ti.rock.criteria import load_factors, strengths
 from rsmpm_ti.rock.tensors import extreme_principals, principal_normal
@@ -19,13 +19,13 @@ from rsmpm_ti.rock.tensors import extreme_principals, principal_normal
 
 @ti.func
 def tensile_load(sim: ti.template(), p, own):
-    """Load factor in tension: `own`, by the particle's own stress, or by what decides instead with averaging.
+    """Load factor in tension: `own`, by the particle's own stress, or by what decides instead with a nonlocal mean.
 
     That is the mean stress, and own stress where the particle is excluded from tension in its direction.
     """
     load = own
-    if ti.static(sim.averaging):
-        rule = sim.rock.averaging
+    if ti.static(sim.is_nonlocal):
+        rule = sim.rock.nonlocal_mean
         load = ti.select(rule.own_decides(sim, p, principal_normal(sim.particles.sigma[p])) == 1, own, 0.0)
         mean = mean_stress(sim, p)
         if rule.own_decides(sim, p, principal_normal(mean)) == 0:
@@ -61,7 +61,7 @@ def margins(sim) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     n = sim.particles.count
     margin, governs, damage = np.ones(n), np.zeros(n, dtype=np.int32), np.zeros(n)
     if sim.particles.breaks:
-        if sim.averaging:
-            smooth_stress(sim)
+        if sim.is_nonlocal:
+            sum_nonlocal(sim)
         evaluate_margins(sim, margin, governs, damage)
     return margin, governs, damage

@@ -12,13 +12,13 @@ from rsmpm_ti.rock.tensors import extreme_principals
 
 
 @ti.kernel
-def clear_means(sim: ti.template()):
+def clear_nonlocal_sums(sim: ti.template()):
     zero = ti.Vector.zero(float, 6)
-    for i in ti.grouped(sim.means.sums):
-        sim.means.sums[i] = zero
-        sim.means.peak[i] = 0.0
+    for i in ti.grouped(sim.nonlocal_sums.sums):
+        sim.nonlocal_sums.sums[i] = zero
+        sim.nonlocal_sums.peak[i] = 0.0
     for _ in range(1):
-        sim.means.count[None], sim.means.any_overloaded[None] = 0, 0
+        sim.nonlocal_sums.count[None], sim.nonlocal_sums.any_overloaded[None] = 0, 0
 
 
 @ti.func
@@ -34,7 +34,7 @@ def add_stress(sim: ti.template(), start, stop, slot, what: ti.template(), dt, t
         carried = V_p * ti.Vector([sigma[0], sigma[1], sigma[2], sigma[3], 1.0, strain])
         for offset in ti.static(sim.stencil):
             i = base + ti.Vector(offset)
-            sim.traversal.add(sim.means.sums, i, tensor_weight(w, offset) * carried)
+            sim.traversal.add(sim.nonlocal_sums.sums, i, tensor_weight(w, offset) * carried)
 
 
 @ti.kernel
@@ -45,13 +45,13 @@ def spread_stress(sim: ti.template(), ticket: int):
 @ti.kernel
 def blur(sim: ti.template(), source: ti.template(), target: ti.template(), axis: ti.template()):
     """Convolution of node sums with the taps along one axis."""
-    reach = ti.static(sim.means.reach)
+    reach = ti.static(sim.nonlocal_sums.reach)
     for i in ti.grouped(source):
         total = ti.Vector.zero(float, 6)
         for k in range(-reach, reach + 1):
             j = i + k * ti.Vector.unit(2, axis)
             if j[axis] >= 0 and j[axis] < sim.grid.nodes[axis]:
-                total += sim.means.taps[k + reach] * source[j]
+                total += sim.nonlocal_sums.filter_weights[k + reach] * source[j]
         target[i] = total
 
 
@@ -63,7 +63,7 @@ def mean_stress(sim: ti.template(), p):
     w, dw = weights_at(sim, xi, base)
     total = ti.Vector.zero(float, 6)
     for offset in ti.static(sim.stencil):
-        total += tensor_weight(w, offset) * sim.means.sums[base + ti.Vector(offset)]
+        total += tensor_weight(w, offset) * sim.nonlocal_sums.sums[base + ti.Vector(offset)]
     return ti.Vector([total[0], total[1], total[2], total[3]]) / total[4]
 
 
@@ -71,12 +71,12 @@ def mean_stress(sim: ti.template(), p):
 def read_crack_strains(sim: ti.template()):
     """Crack strain of each cracked particle if its band had the opening of the rock around: Bazant & Lin (1988).
 
-    J. Struct. Eng. 114:2493. What averaging makes of a band is highest in its middle and falls off as a Gaussian; the
+    J. Struct. Eng. 114:2493. What the mean makes of a band is highest in its middle and falls off as a Gaussian; the
     slope across the crack tells how far away the middle is, so that all rows of a band lose strength together. Beyond
     half the band's width that fades, and beyond the whole of it there is none: the mean of a crack that gapes reaches
     far, but what cracks there is no part of it.
     """
-    particles, means = sim.particles, sim.means
+    particles, means = sim.particles, sim.nonlocal_sums
     for p in particles.mode:
         if particles.mode[p] != 0:
             xi = coordinates(sim, p)
@@ -95,7 +95,7 @@ def read_crack_strains(sim: ti.template()):
             part = ti.max(0.0, ti.min(1.0, 2.0 - 2.0 * away / sim.band))
             away = ti.min(away, 0.5 * sim.band)
             middle = ti.exp(0.5 * away * away / means.variance) * strain / volume
-            particles.crack_strain_nonlocal[p] = part * middle / means.band_share
+            particles.crack_strain_nonlocal[p] = part * middle / means.band_fraction
 
 
 @ti.kernel
@@ -105,14 +105,14 @@ def mark_overloaded(sim: ti.template(), limit: float):
     The mean stress at a particle is a weighted mean of those at its nodes and sigma_1 is convex, so a particle without
     an overloaded node cannot be overloaded: most are spared the reading.
     """
-    for i in ti.grouped(sim.means.sums):
-        total, overloaded = sim.means.sums[i], 0
+    for i in ti.grouped(sim.nonlocal_sums.sums):
+        total, overloaded = sim.nonlocal_sums.sums[i], 0
         if total[4] > 0.0:
             sigma = ti.Vector([total[0], total[1], total[2], total[3]])
             if extreme_principals(sigma)[0] >= limit * total[4]:
                 overloaded = 1
-                sim.means.any_overloaded[None] = 1
-        sim.means.overloaded[i] = overloaded
+                sim.nonlocal_sums.any_overloaded[None] = 1
+        sim.nonlocal_sums.overloaded[i] = overloaded
 
 
 @ti.func
@@ -120,13 +120,13 @@ def near_overloaded(sim: ti.template(), p):
     base = sim.grid.base(coordinates(sim, p), sim.shape)
     near = 0
     for offset in ti.static(sim.stencil):
-        near |= sim.means.overloaded[base + ti.Vector(offset)]
+        near |= sim.nonlocal_sums.overloaded[base + ti.Vector(offset)]
     return near == 1
 
 
-def smooth_stress(sim) -> None:
-    """Fill sim.means.sums for `mean_stress` and `read_crack_strains`."""
-    clear_means(sim)
+def sum_nonlocal(sim) -> None:
+    """Fill sim.nonlocal_sums.sums for `mean_stress` and `read_crack_strains`."""
+    clear_nonlocal_sums(sim)
     spread_stress(sim, sim.traversal.ticket())
-    blur(sim, sim.means.sums, sim.means.other, 0)
-    blur(sim, sim.means.other, sim.means.sums, 1)
+    blur(sim, sim.nonlocal_sums.sums, sim.nonlocal_sums.other, 0)
+    blur(sim, sim.nonlocal_sums.other, sim.nonlocal_sums.sums, 1)

@@ -37,7 +37,7 @@ def update_stress(sim: ti.template(), p, L, dt):
 @ti.func
 def own_shear_load(sim: ti.template(), load):
     """Load factor in shear, of load factors of a particle's own stress."""
-    return sim.rock.criterion.shear_load(sim.rock.averaging.own_tension(sim, load[0]), load[1])
+    return sim.rock.criterion.shear_load(sim.rock.nonlocal_mean.own_tension(sim, load[0]), load[1])
 
 
 @ti.func
@@ -45,7 +45,7 @@ def failure_by_own_stress(sim: ti.template(), p, extremes):
     """Mode by a particle's own stress: 0, 1 or 2. Tension may be for a mean stress to judge: nonlocal_mean.py."""
     load = load_factors(sim, p, extremes)
     mode = sim.rock.criterion.mode(load[0], load[1])
-    if mode == 1 and sim.rock.averaging.own_decides(sim, p, principal_normal(sim.particles.sigma[p])) == 0:
+    if mode == 1 and sim.rock.nonlocal_mean.own_decides(sim, p, principal_normal(sim.particles.sigma[p])) == 0:
         mode = ti.select(own_shear_load(sim, load) >= 1.0, 2, 0)
     return mode
 
@@ -74,18 +74,18 @@ def check_failure(sim: ti.template(), p, dt, time, slot):
     What failed rock carries, what that costs and when it is an event is for the law after failure to say.
     """
     particles, law = sim.particles, sim.rock.after_failure
-    extremes, failed, lost = extreme_principals(particles.sigma[p]), 0, 0.0
+    extremes, failed, dissipated = extreme_principals(particles.sigma[p]), 0, 0.0
     if particles.mode[p] == 0:
         mode = failure_by_own_stress(sim, p, extremes)
         if mode != 0:
-            lost += start_failure(sim, p, mode, principal_normal(particles.sigma[p]), time)
+            dissipated += start_failure(sim, p, mode, principal_normal(particles.sigma[p]), time)
     else:
         failed = law.failed_mode(sim, p)
     if particles.mode[p] != 0:
         sigma, more = law.respond(sim, p, dt * particles.L[p], dt)
-        lost += more
+        dissipated += more
         particles.sigma[p] = sigma
-        sim.ledger.released[slot] += ti.cast(particles.volume[p] * lost, ti.f64)
+        sim.ledger.released[slot] += ti.cast(particles.volume[p] * dissipated, ti.f64)
         mode = law.failed_mode(sim, p)
         if mode != failed:
-            record_failure(sim, p, mode, extremes, particles.volume[p] * law.released(sim, p, lost), time)
+            record_failure(sim, p, mode, extremes, particles.volume[p] * law.released(sim, p, dissipated), time)

@@ -8,7 +8,7 @@ from rsmpm_ti.spec.scene import Scene
 MARGIN = 3
 """Cells of empty grid around the domain, so that no stencil leaves the arrays."""
 
-FAR = -(10**6)
+NO_WALL = -(10**6)
 """Wall index of an axis without a wall."""
 
 
@@ -23,7 +23,7 @@ class Grid:
         beyond = MARGIN + domain.room
         self.nodes = tuple(int(c) + 2 * beyond + 1 for c in cells)
         self.origin = tuple(float(a) - beyond * domain.dx for a in domain.lower)
-        lower, upper = [FAR] * dim, [-FAR] * dim
+        lower, upper = [NO_WALL] * dim, [-NO_WALL] * dim
         for boundary in scene.loading.boundaries:
             row = round((boundary.position - self.origin[boundary.axis]) / domain.dx)
             if boundary.side == "lower":
@@ -37,7 +37,7 @@ class Grid:
             (d, rows[d], step, tuple(1 if e == d else n for e, n in enumerate(self.nodes)))
             for d in range(dim)
             for rows, step in ((lower, 1), (upper, -1))
-            if folded and abs(rows[d]) != -FAR
+            if folded and abs(rows[d]) != -NO_WALL
         )
 
     @ti.func

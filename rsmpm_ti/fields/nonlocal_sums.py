@@ -18,9 +18,9 @@ class NonlocalSums:
     overload."""
 
     def __init__(self, scene: Scene, grid: Grid, real):
-        taps = scene.rock.averaging.taps(scene.domain.dx, scene.shape.variance)
-        self.reach, self.taps = len(taps) // 2, ti.field(real, len(taps))
-        self.taps.from_numpy(np.array(taps))
+        filter_weights = scene.rock.nonlocal_mean.filter_weights(scene.domain.dx, scene.shape.variance)
+        self.reach, self.filter_weights = len(filter_weights) // 2, ti.field(real, len(filter_weights))
+        self.filter_weights.from_numpy(np.array(filter_weights))
         self.sums, self.other = (ti.Vector.field(6, real, grid.nodes) for _ in range(2))
         self.peak, self.overloaded, self.any_overloaded = (
             ti.field(real, grid.nodes),
@@ -28,13 +28,13 @@ class NonlocalSums:
             ti.field(ti.i32, ()),
         )
         band = scene.shape.crack_band * scene.domain.dx
-        self.band_share = scene.rock.averaging.band_share(band)
-        self.variance = scene.rock.averaging.band_variance(band)
+        self.band_fraction = scene.rock.nonlocal_mean.band_fraction(band)
+        self.variance = scene.rock.nonlocal_mean.band_variance(band)
         # smallest tensile strength of a particle [Pa], and steps between two looks: the mean over a length cannot
         # change within a quarter of the time that a wave needs for it
         self.weakest = scene.rock.criterion.tensile_strength
         travel = scene.wave_speed * scene.dt
-        self.interval = max(1, math.floor(0.25 * scene.rock.averaging.length / travel))
+        self.interval = max(1, math.floor(0.25 * scene.rock.nonlocal_mean.length / travel))
         # cracks that have begun at this look: how many, position and normal
         self.count = ti.field(ti.i32, ())
         self.x, self.normal = (ti.Vector.field(2, real, MAX_NEW_CRACKS) for _ in range(2))

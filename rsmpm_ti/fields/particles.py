@@ -68,7 +68,7 @@ class Particles:
         self.history = LawHistory(scene.rock.after_failure.history if self.breaks else (), dim, count, real)
         real_fields += self.history.real_fields
         whole_fields += self.history.whole_fields
-        if self.breaks and scene.rock.averaging.acts:
+        if self.breaks and scene.rock.nonlocal_mean.acts:
             # overload is of one step only; excluding_normal: of the crack beside which this particle lies, or 0
             self.overload, self.excluding_normal = ti.field(real, count), vector(dim)
             # crack strain of the rock around, by which tensile strength is lost: as last averaged, and the largest

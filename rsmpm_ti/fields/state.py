@@ -19,7 +19,7 @@ from rsmpm_ti.spec.loading_start import Affine
 from rsmpm_ti.spec.scene import Scene
 from rsmpm_ti.spec.seeding import Seeds
 
-FEW_NODES = 50_000
+SERIAL_NODES = 50_000
 """On a CPU, fewer nodes than these are done by one thread: 0.2 ms, as waking the others takes."""
 
 
@@ -64,15 +64,15 @@ class Simulation:
         self.particles = Particles(scene, count, real)
         self.traversal = traversal(count, gpu, deterministic)
         self.nodes = Nodes(scene, self.grid, real, use_sparse_grid(scene, count))
-        few = not gpu and math.prod(n - 2 * scene.domain.room for n in self.grid.nodes) < FEW_NODES
+        few = not gpu and math.prod(n - 2 * scene.domain.room for n in self.grid.nodes) < SERIAL_NODES
         self.nodes.serial = self.traversal.serial or self.traversal.ordered or few
         self.events, self.ledger = (
             Events(scene, count, real, self.particles.history),
             Ledger(scene, self.traversal.count),
         )
-        self.averaging = scene.rock.criterion.breaks and scene.rock.averaging.acts
-        if self.averaging:
-            self.means = NonlocalSums(scene, self.grid, real)
+        self.is_nonlocal = scene.rock.criterion.breaks and scene.rock.nonlocal_mean.acts
+        if self.is_nonlocal:
+            self.nonlocal_sums = NonlocalSums(scene, self.grid, real)
         self.report = Report(scene)
         self._fill(scene, seeds)
 
@@ -97,8 +97,8 @@ class Simulation:
         if particles.varied:
             strength = scene.rock.heterogeneity.factors(x, volume)  # one draw over all bodies
             particles.strength.from_numpy(strength[order].astype(kind))
-            if self.averaging:
-                self.means.weakest *= float(strength.min())
+            if self.is_nonlocal:
+                self.nonlocal_sums.weakest *= float(strength.min())
 
 
 def initial_velocity(scene: Scene, body_index: int, x: np.ndarray) -> np.ndarray:
@@ -116,8 +116,8 @@ def initial_velocity(scene: Scene, body_index: int, x: np.ndarray) -> np.ndarray
     if isinstance(loading.start, Affine):
         lower, upper = loading.platens
         axis, elasticity = lower.axis, scene.rock.elasticity
-        share = (x[:, axis] - lower.position) / loading.height
-        v[:, axis] += lower.speed + (upper.speed - lower.speed) * share
+        fraction = (x[:, axis] - lower.position) / loading.height
+        v[:, axis] += lower.speed + (upper.speed - lower.speed) * fraction
         ratio = elasticity.lateral_ratio(scene.dim)
         for lateral in (d for d in range(scene.dim) if d != axis):
             v[:, lateral] += ratio * loading.strain_rate * (x[:, lateral] - centre[lateral])

@@ -41,21 +41,21 @@ class Carried:
     failed: int
 
 
-def translate(shape, transfer, cells: int, way: float) -> Carried:
+def translate(shape, transfer, cells: int, distance: float) -> Carried:
     """Carry a block of cells x cells with the balanced field `way` cells along x at 1 m/s and half of that along y."""
-    room, half = math.ceil(way) + 3, 0.5 * cells
+    room, half = math.ceil(distance) + 3, 0.5 * cells
     criterion = MohrCoulomb(cohesion=COHESION, friction_angle=FRICTION, tensile_strength=TENSILE)
     size = (cells + room + 3, cells + room + 3)
     scene = scene_of(size, (3, 3), (3 + cells,) * 2, rock=breaking(criterion), shape=shape, transfer=transfer)
     piece = Piece.of(scene)
-    place = (piece.x - 3.0 - half) / half
-    field = balanced_field(*place.T)
+    position = (piece.x - 3.0 - half) / half
+    field = balanced_field(*position.T)
     piece.start(0.5, np.array([1.0, 0.5]), field)
-    total = round(way * DX / piece.clock.dt)
+    total = round(distance * DX / piece.clock.dt)
     misses = []
     for k in range(LOOKS):
         piece.drive.advance(total // LOOKS)
-        if k * way / LOOKS >= 1.0:  # the first particles have crossed
+        if k * distance / LOOKS >= 1.0:  # the first particles have crossed
             misses.append(np.abs(piece.by_id("sigma") - field)[:, [0, 1, 3]].max(axis=1) / PEAK)
     return Carried(
         float(np.sqrt(np.mean(np.square(misses)))), float(np.max(misses)), int((piece.by_id("mode") > 0).sum())
@@ -64,13 +64,13 @@ def translate(shape, transfer, cells: int, way: float) -> Carried:
 
 def cell_crossing(full: bool) -> Outcome:
     """1: a stressed block is carried over cells; what it carries in itself should not notice."""
-    cells, way, rows = (16, 3.0, []) if full else (8, 2.0, [])
+    cells, distance, rows = (16, 3.0, []) if full else (8, 2.0, [])
     runs = [(QuadraticBSpline(), PicFlip())]
     if full:
         runs += [(Linear(), PicFlip()), (Gimp(), PicFlip()), (Linear(), PicFlip(flip=0.99))]
         runs += [(QuadraticBSpline(), PicFlip(flip=0.99)), (QuadraticBSpline(), Apic())]
     for shape, transfer in runs:
-        carried, name = translate(shape, transfer, cells, way), type(shape).__name__
+        carried, name = translate(shape, transfer, cells, distance), type(shape).__name__
         if isinstance(transfer, Apic) or transfer.flip < 1.0:
             name += ", Apic" if isinstance(transfer, Apic) else f", flip {transfer.flip:g}"
         if isinstance(shape, Linear):
@@ -102,7 +102,7 @@ RINGING = 10_000
 
 
 def _ring(piece: Piece, steps: int) -> tuple[float, float]:
-    """Noise in a breathing block: share of it that is left, and change of stress by it over the largest stress."""
+    """Noise in a breathing block: fraction of it that is left, and change of stress by it over the largest stress."""
     motion = breathing(piece.x)
     noise = unseen(piece, np.abs(motion).max())
     piece.start(0.5, motion)

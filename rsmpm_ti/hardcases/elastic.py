@@ -33,15 +33,15 @@ def _patch(piece: Piece, nu: float, cells: tuple[int, int]) -> float:
     """One step from an affine velocity field: error of the stress well inside the block over the stress."""
     gradient = SMALL * piece.sim.wave_speed / DX * np.array([[1.0, 0.4], [-0.2, -0.5]])
     half = np.array(cells) / 2
-    place = piece.x - (4.0 + half)
-    piece.start(0.5, DX * place @ gradient.T)
+    position = piece.x - (4.0 + half)
+    piece.start(0.5, DX * position @ gradient.T)
     piece.drive.advance(1)
     step = gradient * piece.clock.dt
     step = step @ np.linalg.inv(np.eye(2) + 0.5 * step)  # the increment referred to mid-step, Hughes & Winget (1980)
     strain = 0.5 * (step + step.T)
     lam, mu = E * nu / ((1.0 + nu) * (1.0 - 2.0 * nu)), E / (2.0 * (1.0 + nu))
     exact = np.array([*(lam * np.trace(strain) + 2.0 * mu * np.diag(strain)), 2.0 * mu * strain[0, 1]])
-    inside = (np.abs(place) < half - DEEP[piece.sim.shape.width]).all(axis=1)
+    inside = (np.abs(position) < half - DEEP[piece.sim.shape.width]).all(axis=1)
     return float(np.abs(piece.by_id("sigma")[inside][:, [0, 1, 3]] - exact).max() / np.abs(exact).max())
 
 
@@ -56,7 +56,7 @@ def thin_beam(nu: float) -> float:
 
 
 def _bending(piece: Piece) -> tuple[float, float]:
-    """(Frequency of the first bending mode [1/s], share of energy created over a period)."""
+    """(Frequency of the first bending mode [1/s], fraction of energy created over a period)."""
     x = (piece.x[:, 0] - 4.0) / BEAM[0]
     k = ROOT * x
     shape = (
@@ -71,8 +71,8 @@ def _bending(piece: Piece) -> tuple[float, float]:
         times.append(piece.clock.time)
         motion.append(float(piece.by_id("v")[:, 1] @ shape))
         created = max(created, 1.0 - start / piece.energy)
-    share = motion[-2] / (motion[-2] - motion[-1])
-    return 0.25 / (times[-2] + share * (times[-1] - times[-2])), created
+    fraction = motion[-2] / (motion[-2] - motion[-1])
+    return 0.25 / (times[-2] + fraction * (times[-1] - times[-2])), created
 
 
 def nearly_incompressible(full: bool) -> Outcome:
@@ -86,7 +86,7 @@ def nearly_incompressible(full: bool) -> Outcome:
             rows.append(at_most(f"{name}: uniform strain, error of the stress", _patch(block, nu, cells), 1e-9, why))
             frequency, created = _bending(piece)
             why = "bending is slow against the step: its energy does not beat"
-            rows.append(at_most(f"{name}: share of energy created in bending", created, 0.02, why))
+            rows.append(at_most(f"{name}: fraction of energy created in bending", created, 0.02, why))
             why = "a real beam of this height is a few per cent below thin-beam theory; what is above it is locking"
             rows.append(seen(f"{name}: bending frequency over thin-beam theory", frequency / thin_beam(nu), why))
             why = "c_p = 4980, 10578 and 33055 m/s"

@@ -87,11 +87,11 @@ def uniform_failure(full: bool) -> Outcome:
     before = np.flatnonzero(table["time_s"] < events.time[0])[-8:]
     line = np.polyfit(table["time_s"][before], table["stress_top_Pa"][before], 1)
     nominal = float(np.polyval(line, events.time[0]))
-    share, took = len(events) / piece.particles.count, (events.time[-1] - events.time[0]) / piece.clock.dt
+    fraction, took = len(events) / piece.particles.count, (events.time[-1] - events.time[0]) / piece.clock.dt
     rows = [
         relative("nominal stress at first failure/UCS", UCS, nominal, 0.01, "two rows of 0.5 % of UCS each"),
         relative("sigma_3 of the first failure/UCS", -UCS, float(events.sigma_3[0]), 0.01, "as nominal: it is uniform"),
-        relative("share of particles that fail", 1.0, share, 0.0, "all are equal"),
+        relative("fraction of particles that fail", 1.0, fraction, 0.0, "all are equal"),
         at_most("steps from first failure to last", took, 4.0 * HEIGHT / 0.5, "4 transits of a wave"),
         difference("stress is finite", 1.0, float(np.isfinite(piece.by_id("sigma")).all()), 0.0, "no NaN"),
         at_most("energy created, over the work", _created(table, start), 0.05, FIRST_ORDER),
@@ -111,8 +111,8 @@ def failure_energy(full: bool) -> Outcome:
         created.append(_created(table, start))
         rows.append(at_most(f"CFL {cfl:g}: energy created, over the work", created[-1], 0.05, FIRST_ORDER))
     rows.append(at_most("what half the step leaves of it", created[1] / created[0], 0.6, "first order: a half"))
-    share = len(read_events(piece.sim)) / piece.particles.count
-    rows.append(at_least("share of particles that fail", share, 0.1, "enough to have something to book"))
+    fraction = len(read_events(piece.sim)) / piece.particles.count
+    rows.append(at_least("fraction of particles that fail", fraction, 0.1, "enough to have something to book"))
     return Outcome((*rows, *_energy_rows(piece, table)))
 
 

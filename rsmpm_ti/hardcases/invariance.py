@@ -29,8 +29,8 @@ IMAGES = {
 
 def _twin(x: np.ndarray, image: np.ndarray) -> np.ndarray:
     """For each particle, the one that lies where its image does."""
-    place = (x - MIDDLE) @ image.T + MIDDLE
-    return np.argmin(np.linalg.norm(place[:, None] - x[None], axis=2), axis=1)
+    position = (x - MIDDLE) @ image.T + MIDDLE
+    return np.argmin(np.linalg.norm(position[:, None] - x[None], axis=2), axis=1)
 
 
 def _carried(sigma: np.ndarray, image: np.ndarray) -> np.ndarray:

@@ -22,7 +22,7 @@ def _judge(criterion: ti.template(), length: ti.template(), sigma: ti.types.ndar
         out[p, 2] = criterion.mode(extremes[0], extremes[1])
 
 
-def judge(sigma: np.ndarray, kind) -> tuple[np.ndarray, np.ndarray]:
+def failure_labels(sigma: np.ndarray, kind) -> tuple[np.ndarray, np.ndarray]:
     """(extreme principal stresses [n, 2], label [n]) of packed stresses [n, 4 or 6], computed in float32 or float64."""
     out = np.zeros((len(sigma), 3), dtype=kind)
     _judge(PAPER, sigma.shape[1], np.ascontiguousarray(sigma, dtype=kind), out)
@@ -38,7 +38,7 @@ def exact_extremes(sigma: np.ndarray) -> np.ndarray:
 
 
 def repeated(length: int, perturbation: float) -> np.ndarray:
-    """Stresses with two or three equal principal values, from -50 to 7 MPa, each component moved by a share of them."""
+    """Stresses with two or three equal principal values, from -50 to 7 MPa, each moved by a fraction of itself."""
     levels = 1e6 * np.array([-50.0, -16.0, -1.0, 0.0, 1.9, 2.0, 7.0])
     states = [[p, p, q, 0.0, 0.0, 0.0][:length] for p in levels for q in (p, 0.14 * 2.0 * p, 0.0, -p)]
     states = np.array(states)
@@ -57,7 +57,7 @@ def turns(kind, length: int) -> int:
     size = np.maximum(extremes[:, 0] / 2e6, (extremes[:, 0] - extremes[:, 1]) / 25e6)
     factors = np.linspace(0.0, 4.0, 200)
     states = factors[:, None, None] * (directions / size[:, None])
-    label = judge(states.reshape(-1, length), kind)[1].reshape(states.shape[:2])
+    label = failure_labels(states.reshape(-1, length), kind)[1].reshape(states.shape[:2])
     return int(np.sum((label[:-1] != INTACT) & (label[1:] == INTACT)))
 
 
@@ -66,7 +66,7 @@ def _roots(kind, length: int) -> list[Row]:
     worst, bad = 0.0, 0
     for perturbation in (0.0, 1e-12):
         states = repeated(length, perturbation)
-        found, _ = judge(states, kind)
+        found, _ = failure_labels(states, kind)
         bad += int(np.sum(~np.isfinite(found)))
         scale = np.maximum(np.abs(states).max(axis=1, keepdims=True), 1.0)
         worst = max(worst, float(np.max(np.abs(found - exact_extremes(states.astype(kind).astype(float))) / scale)))
@@ -85,7 +85,7 @@ def _roots(kind, length: int) -> list[Row]:
 def _hydrostatic(kind) -> list[Row]:
     """Pressure never breaks, +2 MPa from all sides does, in tension."""
     pull = np.array([[p, p, p, 0.0] for p in (1.999e6, 2.0e6, 2.001e6, 7.09e6, 50e6, -50e6, 0.0)])
-    wrong = int(np.sum(judge(pull, kind)[1] != [INTACT, TENSION, TENSION, TENSION, TENSION, INTACT, INTACT]))
+    wrong = int(np.sum(failure_labels(pull, kind)[1] != [INTACT, TENSION, TENSION, TENSION, TENSION, INTACT, INTACT]))
     why = "cut-off first: the apex at 7.09 MPa is never asked"
     return [at_most(f"{np.dtype(kind).name}: wrong labels under equal stress from all sides", wrong, 0.0, why)]
 
@@ -104,7 +104,7 @@ def _ties(kind) -> list[Row]:
     ]
     sigma = np.repeat([[s1, s3, 0.0, 0.0] for s1, s3, _ in states], 1000, axis=0)
     expected = np.repeat([label for _, _, label in states], 1000)
-    wrong = int(np.sum(judge(sigma, kind)[1] != expected))
+    wrong = int(np.sum(failure_labels(sigma, kind)[1] != expected))
     why = "tension is asked first, and nothing depends on threads"
     return [at_most(f"{np.dtype(kind).name}: wrong labels at the corner, of 5000", wrong, 0.0, why)]
 

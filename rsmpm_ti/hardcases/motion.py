@@ -50,7 +50,7 @@ def _rigid(turns: int, per_turn: int) -> list[Row]:
     ]
 
 
-def spinning_disc(transfer, turns: float, strength_share: float) -> tuple[Piece, np.ndarray]:
+def spinning_disc(transfer, turns: float, strength_fraction: float) -> tuple[Piece, np.ndarray]:
     """(A disc of 8 cells' diameter after its turns, mean in-plane stress at its centre over the static one, [looks]).
 
     The static stress there is rho w^2 R^2 (3 - 2 nu)/(8 (1 - nu)) (Timoshenko & Goodier, art. 32, plane strain); a
@@ -58,7 +58,7 @@ def spinning_disc(transfer, turns: float, strength_share: float) -> tuple[Piece,
     """
     radius, static = 4.0 * DX, 50e6
     w = math.sqrt(static * 8.0 * (1.0 - NU) / (DENSITY * radius**2 * (3.0 - 2.0 * NU)))
-    strength = 2.0 * static / strength_share
+    strength = 2.0 * static / strength_fraction
     criterion = MohrCoulomb(cohesion=3.0 * strength, friction_angle=40.0, tensile_strength=strength)
     disc = Body(region=Disc(centre=(0.008, 0.008), radius=radius), spin=w)
     scene = scene_of(
@@ -145,13 +145,13 @@ def broken_bar(shape, transfer, diameters: int) -> Flight:
 
     (_, spin), v0 = moments(), piece.by_id("v")[:-1]
     scale = float(mass[:-1] @ np.linalg.norm(v0, axis=1))
-    x0, momentum, angular, way = piece.x[-1], 0.0, 0.0, 0.0
+    x0, momentum, angular, distance = piece.x[-1], 0.0, 0.0, 0.0
     half = piece.x[:-1, 0] > room
-    while way < diameters * BAR[0] / 2:
+    while distance < diameters * BAR[0] / 2:
         piece.drive.advance(50)
         p, l = moments()
         momentum, angular = max(momentum, float(np.abs(p).max()) / scale), max(angular, abs(l / spin - 1.0))
-        way = float(np.linalg.norm(piece.x[:-1][half].mean(axis=0) - room)) - BAR[0] / 4
+        distance = float(np.linalg.norm(piece.x[:-1][half].mean(axis=0) - room)) - BAR[0] / 4
     straight = piece.x[-1] - x0 - np.array([60.0, 20.0]) * piece.clock.time / DX
     sigma = piece.by_id("sigma")
     lone = float(np.abs(straight).max()), float(np.abs(sigma[-1]).max()) / HOOKE.E
@@ -172,7 +172,7 @@ def fragments(full: bool) -> Outcome:
         if transfer.affine:
             why, most = "affine transfers keep it: round-off of 2000 steps", 1e-11
         rows += [
-            at_least(f"{name}: share of particles that fail", flight.failed, 0.05, "it does break"),
+            at_least(f"{name}: fraction of particles that fail", flight.failed, 0.05, "it does break"),
             at_most(f"{name}: momentum over that of all parts", flight.momentum, 1e-12, "round-off of 2000 steps"),
             at_most(f"{name}: change of angular momentum", flight.angular, most, why),
             at_most(f"{name}: lone particle off its line [cells]", flight.lone, 1e-9, "round-off of its place"),

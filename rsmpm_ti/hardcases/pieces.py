@@ -65,13 +65,13 @@ class Piece:
 
     def __post_init__(self):
         self.sim, self.particles, self.clock = self.drive.sim, self.drive.sim.particles, self.drive.clock
-        self._place = self.particles.reference.to_numpy()[np.argsort(self.particles.id.to_numpy())]
+        self._position = self.particles.reference.to_numpy()[np.argsort(self.particles.id.to_numpy())]
 
     def start(self, cfl: float, velocity, sigma=0.0, shift=(0.0, 0.0)) -> None:
         """velocity [m/s] and packed sigma [Pa], per particle in the order of ids or one for all; shift in cells."""
         particles, n = self.particles, self.particles.count
         particles.id.from_numpy(np.arange(n, dtype=np.int32))
-        particles.reference.from_numpy(self._place + DX * np.array(shift))
+        particles.reference.from_numpy(self._position + DX * np.array(shift))
         particles.u.fill(0.0)
         particles.J.fill(1.0)
         particles.v.from_numpy(np.broadcast_to(velocity, (n, 2)).copy())

@@ -43,8 +43,7 @@ def flying(x: np.ndarray) -> np.ndarray:
 
 
 def watch(piece: Piece, cfl: float, velocity: np.ndarray) -> tuple[int, float, str]:
-    """A block at a CFL number: (steps until it is found unstable or WATCHED, largest share of energy that was created,
-    message)."""
+    """A block at a CFL number: (steps until it is found unstable or WATCHED, largest energy created, message)."""
     piece.start(cfl, velocity)
     drive = piece.drive
     history, created, message = History(drive.sim, drive.clock, drive.survey), 0.0, ""
@@ -125,17 +124,17 @@ def past_limit(full: bool) -> Outcome:
     x, rows = piece.x, []
     for cfl in (0.5, 1.0):
         _, created, _ = watch(piece, cfl, breathing(x))
-        rows.append(at_most(f"CFL {cfl:g}: share of energy created", created, 1.2 * beat(cfl), BEAT))
+        rows.append(at_most(f"CFL {cfl:g}: fraction of energy created", created, 1.2 * beat(cfl), BEAT))
     for cfl in (1.9, 2.5, 100.0):
         steps, _, message = watch(piece, cfl, flying(x))
         why = "1.71 is the largest limit at any offset, so it grows"
         rows.append(at_most(f"CFL {cfl:g}: steps until found", steps if message else np.inf, WATCHED - 1, why))
-        why = "step, place, cause and remedy"
+        why = "step, position, cause and remedy"
         told = all(word in message for word in ("at step", "mm", "likely cause", "lower schedule.cfl"))
         rows.append(difference(f"CFL {cfl:g}: message tells what to do", 1.0, float(told), 0.0, why))
     at_limit = [holds(piece, stable_cfl(piece.sim.scene), offset) for offset in OFFSETS]
     why = "the limit that the solver states, at every place of the block in its cells"
-    rows.append(at_least("Linear, musl: share of offsets stable at its limit", np.mean(at_limit), 1.0, why))
+    rows.append(at_least("Linear, musl: fraction of offsets stable at its limit", np.mean(at_limit), 1.0, why))
     return Outcome((*rows, *(_limits() if full else ())))
 
 
@@ -159,7 +158,7 @@ def _edge(piece: Piece, name: str, fraction: float) -> list[Row]:
         fastest = max(fastest, drive.survey.speed / speed)
     at = f"{name}, {fraction:g} of a cell"
     return [
-        at_most(f"{at}: share of energy created", created, 1.2 * beat(0.5), BEAT),
+        at_most(f"{at}: fraction of energy created", created, 1.2 * beat(0.5), BEAT),
         at_most(f"{at}: largest speed over the first", fastest, 3.0, "waves of both directions meet at corners"),
         at_most(f"{at}: momentum lost", drift, 1e-12, "round-off of 2000 steps"),
     ]

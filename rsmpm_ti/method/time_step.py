@@ -11,10 +11,10 @@ USL_CFL = 0.55
 """Smallest stability limit of usl over offsets and shape functions other than linear, in units of dx/c_p: 0.56 is found
 for Gimp (docs/stability.md)."""
 
-LEAST_CFL = 1e-6
+MIN_CFL = 1e-6
 """Smallest step over the time a wave needs for one cell: below it a run never ends and adds up round-off."""
 
-MOST = 2_000_000_000
+MAX_COUNT = 2_000_000_000
 """Most particles, grid nodes and steps: 32-bit numbers count them, and no machine here would hold or finish more."""
 
 
@@ -40,11 +40,11 @@ def check_step(scene) -> None:
     limit = stable_cfl(scene) * scene.domain.dx / scene.wave_speed
     transit = scene.domain.dx / scene.wave_speed
     true_transit = scene.domain.dx / scene.rock.wave_speed()  # without mass scaling: what the paper's digits are
-    if LEAST_CFL * transit <= scene.dt <= limit:
+    if MIN_CFL * transit <= scene.dt <= limit:
         name = "t_end" if schedule.strain_end is None else "strain_end"
         count = scene.t_end / scene.dt
-        if not 1.0 - 1e-9 <= count <= MOST:
-            allowed = f"from 1 to {MOST:.3g} steps of {scene.dt:.4g} s, not {count:.3g}"
+        if not 1.0 - 1e-9 <= count <= MAX_COUNT:
+            allowed = f"from 1 to {MAX_COUNT:.3g} steps of {scene.dt:.4g} s, not {count:.3g}"
             causes = "cfl, dx, density, E, nu and time_scale"
             if name == "strain_end":
                 causes += ", and the end from the platens' speed, position and start.time"
@@ -61,6 +61,6 @@ def check_step(scene) -> None:
     raise refuse(
         given,
         schedule.dt if schedule.dt is not None else schedule.cfl,
-        f"such that dt = {scene.dt:.4g} is in [{LEAST_CFL * transit:.4g}, {limit:.4g}] s (dx/c_p = {transit:.4g} s)",
+        f"such that dt = {scene.dt:.4g} is in [{MIN_CFL * transit:.4g}, {limit:.4g}] s (dx/c_p = {transit:.4g} s)",
         f"use cfl <= {limit / transit:.2f}",
     )

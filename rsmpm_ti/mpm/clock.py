@@ -32,7 +32,7 @@ class Clock:
         return start + (step - first) * self.dt
 
     @property
-    def share(self) -> float:
+    def fraction(self) -> float:
         """Of the run that is done, 0 to 1."""
         return min(1.0, self.time / self.end)
 
@@ -56,16 +56,16 @@ class Clock:
         self.total = self.step + math.ceil((self.end - self.time) / dt - 1e-6)
 
     def advance(self, steps: int) -> None:
-        """Take steps, fewer if the run ends before; with averaging, a look for cracks every `interval` steps."""
+        """Take steps, fewer if the run ends before; with a nonlocal mean, a look for cracks every `interval` steps."""
         last = min(self.step + steps, self.total)
         while self.step < last:
             chunk = last - self.step
-            if self._sim.averaging:  # a look comes after steps 1, 1 + interval, 1 + 2 interval ...
-                interval = self._sim.means.interval
+            if self._sim.is_nonlocal:  # a look comes after steps 1, 1 + interval, 1 + 2 interval ...
+                interval = self._sim.nonlocal_sums.interval
                 chunk = min(chunk, (-self.step) % interval + 1)
             factors = [self.factor(self._time_of(self.step + k + 0.5)) for k in range(chunk)]
             self._pass_list(self._sim, self.dt, self.time, factors)
             self.strain += sum(factors) * self.strain_rate * self.dt
             self.step += chunk
-            if self._sim.averaging and (self.step - 1) % self._sim.means.interval == 0:
+            if self._sim.is_nonlocal and (self.step - 1) % self._sim.nonlocal_sums.interval == 0:
                 track_cracks(self._sim, self.time)

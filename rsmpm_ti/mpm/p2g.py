@@ -92,11 +92,11 @@ def add_particle(
     last = ti.static(sim.dim - 1)
     m_p = sim.density * sim.particles.volume[p]
     mv_p, sigma = m_p * sim.particles.v[p], unpack(stress_on_nodes(sim, p))
-    weight = m_p * field_acceleration(sim, p, time)
+    body_force = m_p * field_acceleration(sim, p, time)
     for row, nodes in ti.static(sim.rows):
         w_row, dw_row = row_weight(w, row), row_gradient(w, dw, row)
         m_row, mv_row = w_row * m_p, w_row * mv_p
-        t_row, t_last = -w_row * weight, ti.Vector.zero(float, sim.dim)
+        t_row, t_last = -w_row * body_force, ti.Vector.zero(float, sim.dim)
         for e in ti.static(range(sim.dim)):
             t_last[e] = sigma[e, last] * w_row
             for d in ti.static(range(sim.dim - 1)):

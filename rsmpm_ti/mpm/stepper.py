@@ -29,9 +29,9 @@ def musl(sim: Simulation, dt: float, start: float, factors: list[float]) -> None
     clear_nodes(sim)
     scatter_all(sim, LOAD, start)
     for step, factor in enumerate(factors, 1):
-        # after the last step it is for nothing, and cheaper than compiling a pass that does not; but with averaging,
-        # where every other step may be the last, that is what is compiled
-        what = MOVE_AND_LOAD if step < len(factors) or not sim.averaging else MOVE
+        # after the last step it is for nothing, and cheaper than compiling a pass that does not; but with a nonlocal
+        # mean, where every other step may be the last, that is what is compiled
+        what = MOVE_AND_LOAD if step < len(factors) or not sim.is_nonlocal else MOVE
         musl_step(sim, what, dt, factor, start + step * dt, sim.traversal.ticket(2))
 
 

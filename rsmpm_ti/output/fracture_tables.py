@@ -81,7 +81,10 @@ CRACKS = Table(
         ),
         Column(name="initiation_strain", unit="1", about="nominal strain then", value=each(lambda row: row.strain)),
         Column(
-            name="initiation_{axis}_m", unit="m", about="where it began", value=each(lambda row: row.crack.origin.place)
+            name="initiation_{axis}_m",
+            unit="m",
+            about="where it began",
+            value=each(lambda row: row.crack.origin.position),
         ),
         Column(
             name="initiation_mode", unit="", about="tension or shear, of its first failure",
@@ -165,7 +168,7 @@ ACOUSTIC = Table(
     ),
     columns=(
         Column(name="time_s", unit="s", about="of its first failure", value=lambda s: s.catalogue.time),
-        Column(name="{axis}_m", unit="m", about="where that was, the hypocentre", value=lambda s: s.catalogue.place),
+        Column(name="{axis}_m", unit="m", about="where that was, the hypocentre", value=lambda s: s.catalogue.position),
         Column(
             name="energy_J", unit="J", about="released by all its failures; per metre of thickness in 2D",
             value=lambda s: s.catalogue.energy,
@@ -181,7 +184,7 @@ ACOUSTIC = Table(
         ),
         Column(
             name="shear_share", unit="1", about="fraction of its failures that are in shear",
-            value=lambda s: s.catalogue.shear_share,
+            value=lambda s: s.catalogue.shear_fraction,
         ),
         Column(
             name="nominal_stress_Pa", unit="Pa", about="nominal stress then, compression positive",

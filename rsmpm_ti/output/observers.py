@@ -7,8 +7,8 @@ from rsmpm_ti.output.writer import Writer
 from rsmpm_ti.solver.observer import Observer
 from rsmpm_ti.solver.view import View
 
-JUMP_SHARE, JUMP_GROWTH = 0.0003, 0.05
-"""A frame is added when failures since the last one exceed this share of all particles and of all failures so far."""
+JUMP_FRACTION, JUMP_GROWTH = 0.0003, 0.05
+"""A frame is added when failures since the last one exceed these fractions of all particles and of all so far."""
 
 
 class Frames(Observer):
@@ -19,7 +19,7 @@ class Frames(Observer):
     def __init__(self, writer: Writer, frames: int, particle_count: int):
         """frames: how many at equal intervals, beside that of the start; jumps at most double that."""
         self._writer, self._frames = writer, frames
-        self._jump = max(1.0, JUMP_SHARE * particle_count)
+        self._jump = max(1.0, JUMP_FRACTION * particle_count)
         self._extra, self._next = frames, 0
         self._failed, self._count = 0.0, 0
 

@@ -51,16 +51,16 @@ def draw_chrome(
     axes.tick_params(labelsize=13)
     for axis, pixels in ((axes.xaxis, layout.panel.width), (axes.yaxis, layout.panel.height)):
         axis.set_major_locator(MaxNLocator(max(2, pixels // 100), steps=[1, 2, 5, 10]))
-    place = layout.panel.left / width, 1.0 - (layout.panel.top - 24) / height
-    figure.text(*place, wording.title, fontsize=19, fontweight="bold", ha="left", va="bottom")
+    position = layout.panel.left / width, 1.0 - (layout.panel.top - 24) / height
+    figure.text(*position, wording.title, fontsize=19, fontweight="bold", ha="left", va="bottom")
 
     if wording.bar is not None:
         _colour_bar(figure, layout, palette, wording)
     for line, (name, colour) in enumerate(wording.legend):
         top = layout.legend.top + line * LEGEND_LINE
         _swatch(figure, layout.size, Box(left=layout.legend.left, top=top + 6, width=18, height=18), colour)
-        place = (layout.legend.left + 28) / width, 1.0 - (top + 15) / height
-        figure.text(*place, name, fontsize=14, ha="left", va="center_baseline")
+        position = (layout.legend.left + 28) / width, 1.0 - (top + 15) / height
+        figure.text(*position, name, fontsize=14, ha="left", va="center_baseline")
     if inset_limits is not None:
         _inset_axes(figure, layout, wording, *inset_limits)
     canvas.draw()
@@ -73,7 +73,7 @@ def _colour_bar(figure: Figure, layout: Layout, palette: Palette, wording: Wordi
     axes = figure.add_axes(layout.bar.fraction(layout.size))
     bar = figure.colorbar(mappable, cax=axes, extend="neither" if wording.ticks else "both")
     if wording.ticks:
-        bar.set_ticks([limit * place for place, _ in wording.ticks], labels=[label for _, label in wording.ticks])
+        bar.set_ticks([limit * position for position, _ in wording.ticks], labels=[label for _, label in wording.ticks])
     else:
         bar.locator = MaxNLocator(max(4, layout.bar.height // 50), steps=[1, 2, 2.5, 5, 10], symmetric=True)
         bar.update_ticks()

@@ -10,11 +10,11 @@ from rsmpm_ti.paint.palette import Palette, crack_palette, cracking_palette, mar
 from rsmpm_ti.records.snapshot import INTACT, SHEAR, Snapshot
 
 BEGUN = 0.6
-"""Share of its tint with which rock that has just begun to crack stands out from intact rock at once."""
+"""Fraction of its tint with which rock that has just begun to crack stands out from intact rock at once."""
 
 MARGIN_TICKS = tuple(
-    (place, f"{1.0 - abs(place):g}" + {-1.0: "  shear", 1.0: "  tension"}.get(place, ""))
-    for place in (-1.0, -0.75, -0.5, -0.25, 0.0, 0.25, 0.5, 0.75, 1.0)
+    (position, f"{1.0 - abs(position):g}" + {-1.0: "  shear", 1.0: "  tension"}.get(position, ""))
+    for position in (-1.0, -0.75, -0.5, -0.25, 0.0, 0.25, 0.5, 0.75, 1.0)
 )
 
 

@@ -9,7 +9,7 @@ import numpy as np
 
 from rsmpm_ti.records.files import complete
 
-LARGEST = (1920, 1080)
+MAX_FRAME = (1920, 1080)
 """Width and height [px] that a movie fits in."""
 
 ENCODING = ("-colorspace", "bt709", "-color_primaries", "bt709", "-color_trc", "bt709")
@@ -92,7 +92,7 @@ class Movie:
 
 def movie_size(width: int, height: int) -> tuple[int, int]:
     """Width and height of the movie of frames of that size: within LARGEST, never enlarged, even as H.264 wants it."""
-    scale = min(1.0, LARGEST[0] / width, LARGEST[1] / height)
+    scale = min(1.0, MAX_FRAME[0] / width, MAX_FRAME[1] / height)
     return 2 * round(width * scale / 2), 2 * round(height * scale / 2)
 
 

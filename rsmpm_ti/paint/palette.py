@@ -9,7 +9,7 @@ from cmcrameri import cm
 INFLATE = 1.04
 """Squares of exactly the particle's volume let the background shimmer through where rock is stretched."""
 
-LARGEST_SQUARE = 2.0
+MAX_SQUARE = 2.0
 """In median half-sizes: a failed particle whose volume has run away must not cover the picture."""
 
 LEVELS = 4097
@@ -48,16 +48,16 @@ class Palette:
 
     def table(self) -> np.ndarray:
         """The ramp in LEVELS steps, uint8 [LEVELS, 3]: a colour is then one look-up, off by half a step of 255."""
-        place = np.linspace(0.0, len(self.ramp) - 1.0, LEVELS)
+        position = np.linspace(0.0, len(self.ramp) - 1.0, LEVELS)
         known = np.arange(len(self.ramp))
-        return np.rint([np.interp(place, known, channel) for channel in self.ramp.T]).astype(np.uint8).T.copy()
+        return np.rint([np.interp(position, known, channel) for channel in self.ramp.T]).astype(np.uint8).T.copy()
 
     def colours(self, value: np.ndarray, mode: np.ndarray) -> np.ndarray:
         """Colour of each particle, float32 [n, 3]: `value` in limits, -1 to 1, `mode` as in a Snapshot."""
-        place = (np.clip(value, -1.0, 1.0) + 1.0) * 0.5 * (len(self.ramp) - 1)
-        left = np.minimum(place.astype(np.int32), len(self.ramp) - 2)
-        share = (place - left)[:, None]
-        ramp = self.ramp[left] * (1.0 - share) + self.ramp[left + 1] * share
+        position = (np.clip(value, -1.0, 1.0) + 1.0) * 0.5 * (len(self.ramp) - 1)
+        left = np.minimum(position.astype(np.int32), len(self.ramp) - 2)
+        fraction = (position - left)[:, None]
+        ramp = self.ramp[left] * (1.0 - fraction) + self.ramp[left + 1] * fraction
         return np.where((mode > 0)[:, None], self.marks()[mode], ramp).astype(np.float32)
 
 
@@ -77,8 +77,8 @@ def cracking_palette() -> Palette:
     """Failure modes, and in pale tints of their colours rock that has begun to fail: shear below 0, tension above."""
     plain = crack_palette()
     intact, ends = plain.ramp[0], np.array(((0x8C, 0xC4, 0xEC), (0xFF, 0xC0, 0x87)), dtype=np.float32)
-    share = np.abs(np.linspace(-1.0, 1.0, 257, dtype=np.float32))[:, None]
-    ramp = (1.0 - share) * intact + share * np.repeat(ends, (128, 129), axis=0)
+    fraction = np.abs(np.linspace(-1.0, 1.0, 257, dtype=np.float32))[:, None]
+    ramp = (1.0 - fraction) * intact + fraction * np.repeat(ends, (128, 129), axis=0)
     return replace(plain, ramp=ramp, folded=True)
 
 
@@ -117,7 +117,7 @@ def squares_in_view(
     scale = view.width / (view.upper[0] - view.lower[0]), view.height / (view.upper[1] - view.lower[1])
     column = (x[:, 0] - view.lower[0]) * scale[0]
     row = (view.upper[1] - x[:, 1]) * scale[1]
-    side = np.minimum(half, LARGEST_SQUARE * np.median(half[finite])) * scale[0] * INFLATE
+    side = np.minimum(half, MAX_SQUARE * np.median(half[finite])) * scale[0] * INFLATE
     with np.errstate(invalid="ignore"):
         inside = (abs(column - view.width / 2) < view.width / 2 + side) & (
             abs(row - view.height / 2) < view.height / 2 + side

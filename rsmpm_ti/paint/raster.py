@@ -127,8 +127,8 @@ def level(area: ti.template(), value: ti.template(), side: ti.template(), folded
     mean = ti.cast(value[k, m], ti.f32) / (ti.cast(ti.max(1, area[0, k, m]), ti.f32) * UNIT)
     if ti.static(folded):
         mean = ti.select(side[k, m] < 0, -mean, mean)
-    place = (ti.min(ti.f32(1.0), ti.max(ti.f32(-1.0), mean)) + 1.0) * (ti.f32(0.5) * (levels - 1))
-    return ti.cast(place + 0.5, ti.i32)
+    position = (ti.min(ti.f32(1.0), ti.max(ti.f32(-1.0), mean)) + 1.0) * (ti.f32(0.5) * (levels - 1))
+    return ti.cast(position + 0.5, ti.i32)
 
 
 @ti.kernel

@@ -16,8 +16,8 @@ from rsmpm_ti.paint.palette import crack_palette
 from rsmpm_ti.paint.png import write_png
 from rsmpm_ti.records.snapshot import Snapshot
 
-LABELLED, LEAST_SHARE = 8, 0.06
-"""At most so many cracks get their lengths written, and only those longer than this share of the panel's height: a
+LABELLED, MIN_FRACTION = 8, 0.06
+"""At most so many cracks get their lengths written, and only those longer than this fraction of the panel's height: a
 label on each splinter would hide the pattern."""
 
 NONE = np.zeros(0)
@@ -101,7 +101,7 @@ def _paths(axes, paths: Sequence[np.ndarray]) -> None:
     left, right, bottom, top = axes.get_images()[0].get_extent()
     lengths = [float(np.linalg.norm(np.diff(path, axis=0), axis=1).sum()) * MILLI for path in paths]
     longest = sorted(range(len(paths)), key=lambda k: -lengths[k])
-    labelled = [k for k in longest[:LABELLED] if lengths[k] >= LEAST_SHARE * (top - bottom)]
+    labelled = [k for k in longest[:LABELLED] if lengths[k] >= MIN_FRACTION * (top - bottom)]
     for path in paths:
         axes.plot(*(path.T * MILLI), color="#1A1A1A", linewidth=0.9, solid_capstyle="round")
     for k in labelled:

@@ -30,7 +30,7 @@ class Result:
 class Progress:
     """What a progress bar shows."""
 
-    share: float
+    fraction: float
     time: float
     strain: float
     stress: float

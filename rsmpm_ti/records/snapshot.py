@@ -36,7 +36,7 @@ class Snapshot:
     # below 0 where the mean stress exceeds the strength and a particle nearby, which exceeds it more, fails first; [n]
     margin: np.ndarray
     governs: np.ndarray  # which failure the margin is to, or which it was: TENSION, SHEAR, or 0 for none, int8 [n]
-    damage: np.ndarray  # share of strength lost, 0 to 1, by the paper's laws 1 where failed, [n]
+    damage: np.ndarray  # fraction of strength lost, 0 to 1, by the paper's laws 1 where failed, [n]
     aperture: np.ndarray  # opening of the crack in the particle [m], 0 by the paper's laws, [n]
     # of the normal of the crack in the particle, from +x [degrees, 0 to 180), NaN where it has none and by the paper's
     # laws; where it failed in shear, of sigma_1 then; [n]

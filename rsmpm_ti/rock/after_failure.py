@@ -98,9 +98,9 @@ class AfterFailure:
         return sim.particles.mode[p]
 
     @ti.func
-    def released(self, sim: ti.template(), p, lost):
+    def released(self, sim: ti.template(), p, dissipated):
         """Energy that an event reports; lost: in the step of the event."""
-        return lost
+        return dissipated
 
 
 class Fluid(AfterFailure):

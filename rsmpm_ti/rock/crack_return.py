@@ -37,7 +37,7 @@ def strength_left(sim: ti.template(), p):
     """
     h, soft = sim.particles.history, sim.rock.after_failure.softening
     full = strengths(sim, p)
-    n = soft.ratio(sim.rock.averaging.softening_strain(sim, p), full[0], soft.G_f_I, sim.band)
+    n = soft.ratio(sim.rock.nonlocal_mean.softening_strain(sim, p), full[0], soft.G_f_I, sim.band)
     t = soft.ratio(h.crack_strain_max[p][1], full[0], soft.G_f_I, sim.band)
     shear = soft.ratio(h.slip[p], full[1], soft.G_f_II, sim.band)
     if sim.particles.mode[p] == 2:
@@ -171,7 +171,7 @@ def crack_return(sim: ti.template(), p, G):
     particles, elasticity, h = sim.particles, sim.rock.elasticity, sim.particles.history
     trial = particles.sigma[p]
     before = elasticity.energy(trial) + spring_energy(sim, p)
-    sim.rock.averaging.follow(sim, p)
+    sim.rock.nonlocal_mean.follow(sim, p)
     left = strength_left(sim, p)
     h.crack_normal[p] = rotated_vector(h.crack_normal[p], G)
     s = open_cracks(sim, p, in_frame(trial, h.crack_normal[p]), left)
@@ -189,5 +189,5 @@ def crack_return(sim: ti.template(), p, G):
     sigma = out_of_frame(s, h.crack_normal[p])
     # the step's work is done by the mean of old and new stress, that of the trial by more
     too_much = 0.5 * double_contraction(trial - sigma, symmetric(G))
-    lost = before - elasticity.energy(sigma) - spring_energy(sim, p) - too_much
-    return sigma, lost
+    dissipated = before - elasticity.energy(sigma) - spring_energy(sim, p) - too_much
+    return sigma, dissipated

@@ -17,7 +17,7 @@ MAX_CELLS = 64
 
 
 @ti.data_oriented
-@checked("averaging")
+@checked("nonlocal_mean")
 @dataclass(frozen=True, kw_only=True)
 class Local:
     """Each particle's own stress and crack strain decide: what fails first then depends on cell size and edges."""
@@ -49,7 +49,7 @@ class Local:
 
 
 @ti.data_oriented
-@checked("averaging")
+@checked("nonlocal_mean")
 @dataclass(frozen=True, kw_only=True)
 class Nonlocal:
     """The mean stress over a length of the rock decides on tension; its most overloaded particle fails first.
@@ -58,19 +58,19 @@ class Nonlocal:
     the rock that is there: free faces and flaws weigh nothing. Bazant & Jirasek (2002), J. Eng. Mech. 128:1119, eq. 1.
 
     A crack grows as a line, not as the blob in which the smooth stress is high: what lies beside a crack, outside a
-    wedge of `wedge` degrees about its line and nearer than `shade` lengths, is judged by its own stress, which the
+    wedge of `wedge` degrees about its line and nearer than `exclusion` lengths, is judged by its own stress, which the
     crack relieves. Local tracking with an exclusion radius, Cervera & Chiumenti (2006), Comput. Methods Appl. Mech.
     Eng. 196:304, sec. 4.
 
     A cracked particle loses tensile strength by the opening of the crack that it is part of, read from the mean crack
-    strain over the same length, not by its own share of it: then a crack costs G_f per area however many rows of
+    strain over the same length, not by its own fraction of it: then a crack costs G_f per area however many rows of
     particles it runs through. Bazant & Lin (1988), J. Struct. Eng. 114:2493. So `length` must be short against the zone
     in which strength is lost, about E G_f/sigma_t^2; where it is not, a crack's tip is robbed of strength by the crack
     behind it.
     """
 
     length: Annotated[Length, Positive]
-    shade: Annotated[float, Interval(ge=0.0, le=100.0)] = 4.0
+    exclusion: Annotated[float, Interval(ge=0.0, le=100.0)] = 4.0
     wedge: Annotated[Angle, Interval(ge=0.1, le=89.9)] = 25.0
 
     acts = True
@@ -106,15 +106,15 @@ class Nonlocal:
 
     @property
     def radius(self) -> float:
-        """Distance up to which a crack shades what lies beside it [m]."""
-        return self.shade * self.length
+        """Distance up to which a crack excludes what lies beside it [m]."""
+        return self.exclusion * self.length
 
     @property
     def slope(self) -> float:
-        """Distance across over distance along of the edge of the wedge that a crack does not shade."""
+        """Distance across over distance along of the edge of the wedge that a crack does not exclude."""
         return math.tan(math.radians(self.wedge))
 
-    def taps(self, dx: float, variance: float) -> tuple[float, ...]:
+    def filter_weights(self, dx: float, variance: float) -> tuple[float, ...]:
         """Weights of a row of nodes, symmetric about the middle one, whose variance with that of spreading to nodes
         and reading back, `variance` cells^2 each, is length^2."""
         spare = (self.length / dx) ** 2 - 2.0 * variance
@@ -124,12 +124,12 @@ class Nonlocal:
         weight = np.exp(-0.5 * np.arange(-reach, reach + 1) ** 2 / spare)
         return tuple((weight / weight.sum()).tolist())
 
-    def band_share(self, width: float) -> float:
-        """What averaging leaves, in its middle, of a strain that is 1 in a band `width` [m] wide and 0 beside it."""
+    def band_fraction(self, width: float) -> float:
+        """What the mean leaves, in its middle, of a strain that is 1 in a band `width` [m] wide and 0 beside it."""
         return math.erf(width / (2.0 * math.sqrt(2.0) * self.length))
 
     def band_variance(self, width: float) -> float:
-        """Variance of such a band after averaging [m^2]."""
+        """Variance of such a band after the mean is taken [m^2]."""
         return self.length**2 + width**2 / 12.0
 
     def check(self, dx: float, variance: float) -> None:
@@ -137,10 +137,10 @@ class Nonlocal:
         least = self.least_length(dx, variance)
         if not self.length >= least:
             remedy = f"use dx of at most {self.length / least * dx:.4g} m"
-            raise refuse("rock.averaging.length", self.length, f"at least {least:.4g} m here", remedy)
+            raise refuse("rock.nonlocal_mean.length", self.length, f"at least {least:.4g} m here", remedy)
         if not self.length <= MAX_CELLS * dx:
             remedy = f"use dx of at least {self.length / MAX_CELLS:.4g} m"
-            raise refuse("rock.averaging.length", self.length, f"at most {MAX_CELLS} cells", remedy)
+            raise refuse("rock.nonlocal_mean.length", self.length, f"at most {MAX_CELLS} cells", remedy)
 
     def least_length(self, dx: float, variance: float) -> float:
         """The shortest length that this grid can average over [m]."""

@@ -32,5 +32,5 @@ def lab_rock(
         elasticity=Hooke(E=17.0 * GPa, nu=0.14),
         criterion=MohrCoulomb(cohesion=5.95 * MPa, friction_angle=40.0, tensile_strength=2.0 * MPa),
         after_failure=Directional(residual_friction_angle=residual_friction_angle, softening=softening),
-        averaging=Nonlocal(length=length),
+        nonlocal_mean=Nonlocal(length=length),
     )

@@ -33,7 +33,7 @@ class Rock:
     criterion: Annotated[MohrCoulomb | Unbreakable, ByType]
     after_failure: Annotated[CompressionOnly | Void | Clipped | Directional, ByType] = CompressionOnly()
     viscosity: Annotated[BulkViscosity | NoViscosity, ByType] = BulkViscosity()
-    averaging: Annotated[Local | Nonlocal, ByType] = Local()
+    nonlocal_mean: Annotated[Local | Nonlocal, ByType] = Local()
     heterogeneity: Annotated[Uniform | Weibull, ByType] = Uniform()
 
     def wave_speed(self, time_scale: float = 1.0) -> float:

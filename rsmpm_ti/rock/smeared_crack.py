@@ -111,21 +111,21 @@ class Directional(AfterFailure):
         h.crack_normal[p] = normal
         if mode == 1:
             h.crack_strain_max[p] = ti.Vector([MIN_CRACK_STRAIN, 0.0])
-            sim.rock.averaging.begin_crack(sim, p, MIN_CRACK_STRAIN)
+            sim.rock.nonlocal_mean.begin_crack(sim, p, MIN_CRACK_STRAIN)
         else:
             h.slip[p] = ti.max(h.slip[p], MIN_CRACK_STRAIN)
         return 0.0
 
     @ti.func
     def respond(self, sim: ti.template(), p, G, dt):
-        sigma, lost = crack_return(sim, p, G)
-        lost *= sim.particles.J[p]
+        sigma, dissipated = crack_return(sim, p, G)
+        dissipated *= sim.particles.J[p]
         h = sim.particles.history
-        h.dissipated[p] = h.dissipated[p] + lost
+        h.dissipated[p] = h.dissipated[p] + dissipated
         mode = sim.particles.mode[p]
         if mode != h.failed[p] and has_failed(sim, p, mode):
             h.failed[p] = mode
-        return sigma, lost
+        return sigma, dissipated
 
     @ti.func
     def stored(self, sim: ti.template(), p):
@@ -144,5 +144,5 @@ class Directional(AfterFailure):
         return sim.particles.history.failed[p]
 
     @ti.func
-    def released(self, sim: ti.template(), p, lost):
+    def released(self, sim: ti.template(), p, dissipated):
         return sim.particles.history.dissipated[p]

@@ -192,7 +192,7 @@ class Run:
 
     def _progress(self, view) -> Progress:
         return Progress(
-            share=view.fraction,
+            fraction=view.fraction,
             time=view.time,
             strain=view.strain,
             stress=view.load.stress,

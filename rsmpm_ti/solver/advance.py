@@ -13,8 +13,8 @@ from rsmpm_ti.solver.outflow import Dropped, drop
 from rsmpm_ti.solver.survey import survey
 from rsmpm_ti.spec.scene import Scene
 
-STRAY_SHARE = 0.02
-"""Share of particles outside the cell they were sorted into above which they are sorted again."""
+STRAY_FRACTION = 0.02
+"""Fraction of particles outside the cell they were sorted into above which they are sorted again."""
 
 SAFE_CELLS = 0.4
 """Between two looks at the particles none may move further than this many cells, or slabs could meet."""
@@ -70,6 +70,6 @@ class Drive:
             self.survey, self.dropped = drop(self.sim, self.survey, self.dropped)
         guard(self.sim, self.clock, self.survey)
         # slabs bear a stray of one row: half a cell beyond it and SAFE_CELLS more is still less than that
-        if self.survey.far_strays or self.survey.strays > STRAY_SHARE * self.sim.particles.count:
+        if self.survey.far_strays or self.survey.strays > STRAY_FRACTION * self.sim.particles.count:
             sort_particles(self.sim)
         return chunk

@@ -11,12 +11,12 @@ J_BOUNDS = (0.05, 20.0)
 """A particle squeezed or stretched beyond these is no longer rock; the run has become unstable."""
 
 
-CREATED_SHARE = 0.5
-"""Share of a run's energy that may have come from nowhere: beyond it the run has become unstable.
+CREATED_FRACTION = 0.5
+"""Fraction of a run's energy that may have come from nowhere: beyond it the run has become unstable.
 
 Runs of rock create up to 0.5 % (docs/stability.md). Velocity and stress are half a step apart, so that the energy of a
-wave beats by sin(w dt/2): 0.3 for one of ten cells at CFL 1. In an unstable run the share tends to 1, since its energy
-grows exponentially, whatever was put into it.
+wave beats by sin(w dt/2): 0.3 for one of ten cells at CFL 1. In an unstable run the fraction tends to 1, since its
+energy grows exponentially, whatever was put into it.
 """
 
 
@@ -25,7 +25,7 @@ QUIET_STRAIN = 1e-6
 
 
 def guard(sim: Simulation, clock: Clock, survey: Survey) -> None:
-    """Stop a run whose numbers mean nothing any more, with step, place, likely cause and remedy."""
+    """Stop a run whose numbers mean nothing any more, with step, position, likely cause and remedy."""
     where = ""
     if survey.sick:
         reference = sim.particles.reference.to_numpy()[np.flatnonzero(sim.particles.id.to_numpy() == survey.sick_id)[0]]
@@ -57,13 +57,13 @@ def guard_energy(sim: Simulation, clock: Clock, survey: Survey, energy_start: fl
     """
     present = survey.kinetic + survey.elastic + survey.dissipated
     created = present - survey.work - energy_start
-    if not created <= CREATED_SHARE * present + quiet:
-        velocity, place = sim.particles.v.to_numpy(), sim.particles.reference.to_numpy() + sim.particles.u.to_numpy()
+    if not created <= CREATED_FRACTION * present + quiet:
+        velocity, position = sim.particles.v.to_numpy(), sim.particles.reference.to_numpy() + sim.particles.u.to_numpy()
         fastest = int(np.argmax(np.linalg.norm(velocity, axis=1)))
         raise UnstableRun(
             f"{100.0 * created / present:.0f} % of the energy of {present:.3g} J came from nowhere at step "
             f"{clock.step}, t = {clock.time:.6g} s; the fastest particle, {survey.speed:.3g} m/s, is at "
-            f"{np.array2string(1e3 * place[fastest], precision=3)} mm; likely cause: a time step too long for this "
+            f"{np.array2string(1e3 * position[fastest], precision=3)} mm; likely cause: a time step too long for this "
             f"shape function and transfer, or particles that cross cells with linear functions; lower schedule.cfl, or "
             f"take QuadraticBSpline"
         )

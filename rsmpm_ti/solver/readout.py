@@ -36,9 +36,9 @@ class Readout:
 
         u, packed = column("u"), column("sigma")
         sigma = np.zeros((n, 3, 3))
-        places = ((0, 0), (1, 1), (2, 2), (0, 1), (1, 2), (2, 0))
+        positions = ((0, 0), (1, 1), (2, 2), (0, 1), (1, 2), (2, 0))
         for k in range(packed.shape[1]):
-            a, b = places[k]
+            a, b = positions[k]
             sigma[:, a, b] = sigma[:, b, a] = packed[:, k]
         sigma_1, sigma_3 = extreme_stresses(packed)
         history = {name: values.take(order, axis=0) for name, values in self.history.items()}

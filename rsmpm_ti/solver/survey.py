@@ -117,8 +117,8 @@ def clear_report(sim: ti.template(), k):
 @ti.func
 def collect(sim: ti.template(), k):
     report, events = sim.report, sim.events
-    for place, field in ti.static(enumerate(report.scalars)):
-        report.values[place] = field[None]
+    for position, field in ti.static(enumerate(report.scalars)):
+        report.values[position] = field[None]
     for mode in ti.static(range(2)):
         report.values[FIXED - 2 + mode] = ti.cast(events.by_mode[mode + 1], ti.f64)
     for d in ti.static(range(sim.dim)):

@@ -25,7 +25,7 @@ class View:
     def __init__(self, sim: Simulation, clock: Clock, survey: Survey, history, out: Path | None = None):
         self.sim, self.survey, self.out, self._history = sim, survey, out, history
         self.time, self.strain, self.step, self.dt, self.fraction = (
-            clock.time, clock.strain, clock.step, clock.dt, clock.share
+            clock.time, clock.strain, clock.step, clock.dt, clock.fraction
         )  # fmt: skip
 
     @property

@@ -14,7 +14,7 @@ from rsmpm_ti.errors import refuse
 from rsmpm_ti.spec.regions import Coordinate
 from rsmpm_ti.units import Velocity
 
-ROUGHEST = 1e3
+MAX_FRICTION = 1e3
 """Largest friction coefficient: nothing slips long before."""
 
 Axis = Annotated[int, Interval(ge=0, le=2)]
@@ -42,7 +42,7 @@ class Platen:
     side: Side
     position: Coordinate
     speed: Annotated[Velocity, Finite]
-    friction: Annotated[float, Interval(ge=0.0, le=ROUGHEST), Remedy("or set bonded")] = 0.0
+    friction: Annotated[float, Interval(ge=0.0, le=MAX_FRICTION), Remedy("or set bonded")] = 0.0
     bonded: bool = False
     span: tuple[Coordinate, Coordinate] | None = None
 

@@ -21,7 +21,7 @@ What it means:
 from rsmpm_ti.errors import refuse
 from rsmpm_ti.rock.elasticity import Hooke
 
-LARGEST_SHARE = 0.1
+MAX_FRACTION = 0.1
 """Of the bulk modulus: beyond it p = K (1 - J) is no law of rock any more."""
 
 
@@ -30,9 +30,9 @@ def check_confined_rock(pressure: float, elasticity: Hooke) -> None:
     if pressure > 0.0 and elasticity.plane_stress:
         remedy = "a fluid presses on the faces of a plate too, where plane stress keeps sigma_zz = 0; use plane strain"
         raise refuse("loading.confinement", pressure, "0 in plane stress", remedy)
-    most = LARGEST_SHARE * elasticity.bulk
+    most = MAX_FRACTION * elasticity.bulk
     if pressure > most:
-        raise refuse("loading.confinement", pressure, f"at most {LARGEST_SHARE:g} of the bulk modulus, {most:.4g} Pa")
+        raise refuse("loading.confinement", pressure, f"at most {MAX_FRACTION:g} of the bulk modulus, {most:.4g} Pa")
 
 
 def confined_volume_ratio(pressure: float, elasticity: Hooke) -> float:

@@ -111,8 +111,8 @@ def _load(path: Path):
             ),
             None,
         )
-        place = f" line {line}" if line else ""
-        raise SceneError(f"{path}{place} cannot be loaded: {_said(error)}") from None
+        position = f" line {line}" if line else ""
+        raise SceneError(f"{path}{position} cannot be loaded: {_said(error)}") from None
     return module
 
 

@@ -6,10 +6,10 @@ from typing import Annotated
 
 from annotated_types import Interval
 
-from rsmpm_ti.checks import LARGEST, checked
+from rsmpm_ti.checks import MAX_SIZE, checked
 from rsmpm_ti.units import Time
 
-Duration = Annotated[Time, Interval(ge=1e-18, le=LARGEST)]
+Duration = Annotated[Time, Interval(ge=1e-18, le=MAX_SIZE)]
 
 
 @checked("start")

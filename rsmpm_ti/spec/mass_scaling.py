@@ -20,7 +20,7 @@ First failure is expected at s by the uniform stress of a box, or that in the mi
 across it in units of P/(pi R) (Hondros 1959), and at the tip of a flaw by the mean of the hoop stress of a sharp crack
 over a distance d (Novozhilov 1969, J. Appl. Math. Mech. 33:201; Seweryn 1994, Eng. Fract. Mech. 47:673), sqrt(2a/d)
 cos(t/2) (s_n cos^2(t/2) - 3/2 tau sin(t)) at its worst angle t, plus the stress along the flaw that its blunt end
-turns into tension, as at an elliptic hole (Inglis 1913). d is the length of averaging, or a cell, which the grid
+turns into tension, as at an elliptic hole (Inglis 1913). d is the length of the mean, or a cell, which the grid
 averages over. Platen strain of a disc: Hertz between plates (Johnson 1985, Contact Mechanics, sec. 5.6).
 
 When it fails: it knows one flaw at a time, straight and alone, and no failure beside the platens; after the first
@@ -36,10 +36,10 @@ from rsmpm_ti.errors import SceneError
 from rsmpm_ti.spec.loading_start import Affine, AtRest, Press, Ramp
 from rsmpm_ti.spec.regions import Box, Difference, Disc, Slit, slits_of
 
-LARGEST = 1000.0
+MAX_TIME_SCALE = 1000.0
 """Largest time scale; the smallest is 1, the true density."""
 
-LEAST_TRANSITS = 5.0
+MIN_TRANSITS = 5.0
 """Wave transits of the specimen that a ramp must last."""
 
 
@@ -58,19 +58,19 @@ class Estimate:
     start: Affine | Ramp | AtRest
 
     @property
-    def _share(self) -> float:
-        """Share of a ramp that is over at that strain: e'T (s^3 - s^4/2) is the strain of a smooth step."""
+    def _fraction(self) -> float:
+        """Fraction of a ramp that is over at that strain: e'T (s^3 - s^4/2) is the strain of a smooth step."""
         assert isinstance(self.start, Ramp)
         reached = self.strain / (self.strain_rate * self.start.time)
         return 1.0 if reached >= 0.5 else _root(lambda s: s**3 - 0.5 * s**4 - reached, 0.0, 1.0)
 
     def error(self, time_scale: float) -> float:
-        """Estimated share of the load at first failure that is inertia's; grows with time_scale."""
+        """Estimated fraction of the load at first failure that is inertia's; grows with time_scale."""
         k, factor = time_scale, 1.0
         impedance = k * self.density * self.wave_speed * self.strain_rate
         added = impedance * self.path
         if isinstance(self.start, Ramp):
-            x, s = 0.5 * math.pi * self.wave_speed * self.start.time / (k * self.height), self._share
+            x, s = 0.5 * math.pi * self.wave_speed * self.start.time / (k * self.height), self._fraction
             factor = self.start.factor(s * self.start.time)
             added += impedance * self.height * min(1.0, 3.0 * math.sqrt(1.0 + x * x) / x**3)
             jolt = self.strain_rate * 6.0 * s * (1.0 - s) / self.start.time
@@ -82,9 +82,9 @@ class Estimate:
 
     def largest(self, tolerance: float) -> float:
         """The largest time scale whose error is at most `tolerance`, in [1, LARGEST]: 1 where even that errs more."""
-        most = LARGEST
+        most = MAX_TIME_SCALE
         if isinstance(self.start, Ramp):
-            most = min(most, self.start.time * self.wave_speed / (LEAST_TRANSITS * self.height))
+            most = min(most, self.start.time * self.wave_speed / (MIN_TRANSITS * self.height))
         if most <= 1.0 or self.error(1.0) >= tolerance:
             return 1.0
         if self.error(most) <= tolerance:
@@ -148,7 +148,7 @@ def _specimen(scene) -> Box | Disc:
             if any(abs(a - b) > scene.domain.dx for a, b in zip(ends, planes, strict=True)):
                 problem = "the body must reach from platen to platen"
     if problem:
-        number = f"give a number in [1, {LARGEST:g}], 1 where waves matter"
+        number = f"give a number in [1, {MAX_TIME_SCALE:g}], 1 where waves matter"
         raise SceneError(f"loading.time_scale = 'auto' is refused: {problem}; {number}")
     assert isinstance(whole, Box | Disc)
     return whole
@@ -167,7 +167,7 @@ def _failure_stress(scene, whole: Box | Disc, axis: int, along: float, across: f
     if rock.heterogeneity.varies:
         area = math.prod(np.subtract(*whole.bounds()[::-1]))
         weakest = min(1.0, (rock.heterogeneity.reference_volume / area) ** (1.0 / rock.heterogeneity.shape))
-    distance = max(scene.domain.dx, rock.averaging.length if rock.averaging.acts else 0.0)
+    distance = max(scene.domain.dx, rock.nonlocal_mean.length if rock.nonlocal_mean.acts else 0.0)
     slits = slits_of(scene.bodies[0].region)
     pulls = [along, across, *(tip_tension(slit, axis, along, across, distance) for slit in slits)]
     pull, press = max(pulls), -min(along, across)

@@ -11,20 +11,20 @@ from typing import Annotated
 import numpy as np
 from annotated_types import Interval, Len
 
-from rsmpm_ti.checks import LEAST, ByType, checked
+from rsmpm_ti.checks import MIN_POSITIVE, ByType, checked
 from rsmpm_ti.errors import refuse
 from rsmpm_ti.units import Angle, Length
 
-FARTHEST = 1e9
+MAX_COORDINATE = 1e9
 """Largest coordinate and length [m]: beyond it a specimen is a mistake, and squares and node numbers overflow."""
 
-DEEPEST, MOST_PARTS = 20, 10_000
+MAX_DEPTH, MAX_PARTS = 20, 10_000
 """Regions within regions, and all of them: every point of a specimen is asked of each."""
 
 
-Coordinate = Annotated[Length, Interval(ge=-FARTHEST, le=FARTHEST)]
+Coordinate = Annotated[Length, Interval(ge=-MAX_COORDINATE, le=MAX_COORDINATE)]
 Position = Annotated[tuple[Coordinate, ...], Len(2, 3)]
-Size = Annotated[Length, Interval(ge=LEAST, le=FARTHEST)]
+Size = Annotated[Length, Interval(ge=MIN_POSITIVE, le=MAX_COORDINATE)]
 
 
 def _dimensions(parts: tuple) -> set[int]:
@@ -41,11 +41,11 @@ def _parts(region) -> tuple:
 
 def _check_nest(name: str, parts: tuple) -> None:
     level, count = parts, len(parts)
-    for _ in range(DEEPEST):
+    for _ in range(MAX_DEPTH):
         level = tuple(inner for part in level for inner in _parts(part))
         count += len(level)
-    if level or count > MOST_PARTS:
-        raise refuse(name, parts, f"at most {MOST_PARTS} regions, nested at most {DEEPEST} deep")
+    if level or count > MAX_PARTS:
+        raise refuse(name, parts, f"at most {MAX_PARTS} regions, nested at most {MAX_DEPTH} deep")
 
 
 @checked("box")
@@ -58,8 +58,8 @@ class Box:
 
     def __post_init__(self):
         edges = [b - a for a, b in zip(self.lower, self.upper, strict=False)]
-        if len(self.lower) != len(self.upper) or not min(edges) >= LEAST:
-            raise refuse("box.upper", self.upper, f"above box.lower = {self.lower} by {LEAST:g} m on every axis")
+        if len(self.lower) != len(self.upper) or not min(edges) >= MIN_POSITIVE:
+            raise refuse("box.upper", self.upper, f"above box.lower = {self.lower} by {MIN_POSITIVE:g} m on every axis")
 
     def contains(self, x: np.ndarray) -> np.ndarray:
         """x [n, dim] -> bool [n]."""

@@ -11,10 +11,10 @@ from typing import Annotated, Literal
 import numpy as np
 from annotated_types import Interval, Len
 
-from rsmpm_ti.checks import LARGEST, ByType, Finite, NotNegative, Positive, Remedy, checked
+from rsmpm_ti.checks import MAX_SIZE, ByType, Finite, NotNegative, Positive, Remedy, checked
 from rsmpm_ti.errors import SceneError, refuse
 from rsmpm_ti.method.shape import Gimp, Linear, QuadraticBSpline
-from rsmpm_ti.method.time_step import LEAST_CFL, MOST, check_step
+from rsmpm_ti.method.time_step import MAX_COUNT, MIN_CFL, check_step
 from rsmpm_ti.method.transfer import Apic, PicFlip
 from rsmpm_ti.rock.criteria import Unbreakable
 from rsmpm_ti.rock.heterogeneity import check_scale
@@ -23,23 +23,22 @@ from rsmpm_ti.spec.boundaries import Fixed, Platen, Wall
 from rsmpm_ti.spec.confinement import check_confined_rock
 from rsmpm_ti.spec.load_cell import LoadCell
 from rsmpm_ti.spec.loading_start import Affine, AtRest, Press, Ramp
-from rsmpm_ti.spec.mass_scaling import LARGEST as LARGEST_SCALE
-from rsmpm_ti.spec.mass_scaling import estimate
-from rsmpm_ti.spec.regions import FARTHEST, Position, Region, slits_of
+from rsmpm_ti.spec.mass_scaling import MAX_TIME_SCALE, estimate
+from rsmpm_ti.spec.regions import MAX_COORDINATE, Position, Region, slits_of
 from rsmpm_ti.spec.scene_checks import check_bodies, check_cracks, check_loading, check_memory, check_motion
 from rsmpm_ti.spec.seeding import Jittered, Lattice, Seeds
 from rsmpm_ti.spec.slit_check import check_slit
 from rsmpm_ti.units import Acceleration, Length, LengthOrArea, Pressure, Spin, Time, Velocity
 
-MOST_BOUNDARIES, MOST_BODIES = 32, 5000
+MAX_BOUNDARIES, MAX_BODIES = 32, 5000
 
-FINEST = 1e-9
+MIN_DX = 1e-9
 """Smallest cell [m]: below it rock is no continuum."""
 
-FINEST_SHARE = 1e-9
+MIN_DX_FRACTION = 1e-9
 """Smallest cell over the largest coordinate: round-off of a particle's place is then 1e-7 of a cell."""
 
-TimeScale = Annotated[float, Interval(ge=1.0, le=LARGEST_SCALE)] | Literal["auto"]
+TimeScale = Annotated[float, Interval(ge=1.0, le=MAX_TIME_SCALE)] | Literal["auto"]
 
 GROWTH = 4
 """Lengths of a domain's longest edge by which it may grow on every side: each asks for pointers to empty blocks."""
@@ -56,7 +55,7 @@ class Domain:
 
     lower: Position
     upper: Position
-    dx: Annotated[Length, Interval(ge=FINEST, le=FARTHEST)]
+    dx: Annotated[Length, Interval(ge=MIN_DX, le=MAX_COORDINATE)]
     grid: Literal["dense", "sparse", "auto"] = "dense"
     outside: Literal["stop", "drop", "grow"] = "stop"
 
@@ -71,12 +70,12 @@ class Domain:
             allowed, remedy = "'stop' or 'drop' with a dense grid", "set domain.grid = 'sparse' to let it grow"
             raise refuse("domain.outside", self.outside, allowed, remedy)
         far = self.farthest
-        if not self.dx >= FINEST_SHARE * far:
-            allowed = f"at least {FINEST_SHARE * far:.4g} m, {FINEST_SHARE:g} of the largest coordinate"
+        if not self.dx >= MIN_DX_FRACTION * far:
+            allowed = f"at least {MIN_DX_FRACTION * far:.4g} m, {MIN_DX_FRACTION:g} of the largest coordinate"
             raise refuse("domain.dx", self.dx, allowed, "move the domain to the origin: places are lost to round-off")
         nodes = math.prod(edge / float(self.dx) + 1.0 for edge in edges)
-        if nodes > MOST:
-            raise refuse("domain.dx", self.dx, f"such that the grid has at most {MOST:.3g} nodes, not {nodes:.3g}")
+        if nodes > MAX_COUNT:
+            raise refuse("domain.dx", self.dx, f"such that the grid has at most {MAX_COUNT:.3g} nodes, not {nodes:.3g}")
 
     @property
     def dim(self) -> int:
@@ -89,7 +88,7 @@ class Domain:
             return 0
         edges = [(b - a) / self.dx for a, b in zip(self.lower, self.upper, strict=True)]
         room = math.ceil(GROWTH * max(edges))
-        while room and math.prod(edge + 2.0 * room + 10.0 for edge in edges) > MOST:
+        while room and math.prod(edge + 2.0 * room + 10.0 for edge in edges) > MAX_COUNT:
             room //= 2
         return room
 
@@ -128,12 +127,12 @@ class Loading:
 
     boundaries: Annotated[
         tuple[Annotated[Platen | Wall | Fixed, ByType], ...],
-        Len(0, MOST_BOUNDARIES),
+        Len(0, MAX_BOUNDARIES),
         Remedy("every kernel holds code for each"),
     ] = ()
     start: Annotated[Affine | Ramp | Press | AtRest, ByType] = AtRest()
     time_scale: TimeScale = 1.0
-    quasi_static: Annotated[float, Interval(ge=1e-6, le=1.0), Remedy("it is a share of the load")] = 0.01
+    quasi_static: Annotated[float, Interval(ge=1e-6, le=1.0), Remedy("it is a fraction of the load")] = 0.01
     body_force: tuple[Annotated[Acceleration, Finite], ...] | None = None
     force_field: object | None = None
     width: Annotated[LengthOrArea, Positive] | None = None
@@ -184,9 +183,9 @@ class Schedule:
     """
 
     strain_end: float | None = None
-    t_end: Annotated[Time, Interval(ge=1e-30, le=LARGEST)] | None = None
-    cfl: Annotated[float, Interval(ge=LEAST_CFL, le=1e3)] = 0.5
-    dt: Annotated[Time, Interval(ge=1e-30, le=LARGEST)] | None = None
+    t_end: Annotated[Time, Interval(ge=1e-30, le=MAX_SIZE)] | None = None
+    cfl: Annotated[float, Interval(ge=MIN_CFL, le=1e3)] = 0.5
+    dt: Annotated[Time, Interval(ge=1e-30, le=MAX_SIZE)] | None = None
     rows: Annotated[int, Interval(ge=1, le=1_000_000)] = 1000
     adaptive: bool = False
 
@@ -221,7 +220,7 @@ class Scene:
 
     title: str
     domain: Domain
-    bodies: Annotated[tuple[Body, ...], Len(1, MOST_BODIES)]
+    bodies: Annotated[tuple[Body, ...], Len(1, MAX_BODIES)]
     rock: Rock
     loading: Loading
     schedule: Schedule
@@ -240,9 +239,9 @@ class Scene:
             )
         if self.dim == 3 and self.rock.elasticity.plane_stress:
             raise refuse("rock.elasticity.plane_stress", True, "False in 3D", "a plate is a 2D scene")
-        if self.domain.outside == "grow" and self.rock.averaging.acts:
+        if self.domain.outside == "grow" and self.rock.nonlocal_mean.acts:
             remedy = "enlarge the domain: averages lie on a dense grid"
-            raise refuse("domain.outside", "grow", "'stop' or 'drop' in rock with rock.averaging", remedy)
+            raise refuse("domain.outside", "grow", "'stop' or 'drop' in rock with rock.nonlocal_mean", remedy)
         check_confined_rock(self.loading.confinement, self.rock.elasticity)
         check_bodies(self)
         check_loading(self)

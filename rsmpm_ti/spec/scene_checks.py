@@ -10,14 +10,14 @@ import numpy as np
 
 from rsmpm_ti.errors import SceneError, refuse, shown
 from rsmpm_ti.method.shape import Gimp
-from rsmpm_ti.method.time_step import MOST
+from rsmpm_ti.method.time_step import MAX_COUNT
 from rsmpm_ti.spec.loading_start import Affine, Press, Ramp
-from rsmpm_ti.spec.mass_scaling import LEAST_TRANSITS
+from rsmpm_ti.spec.mass_scaling import MIN_TRANSITS
 
-FASTEST = 0.4
+MAX_TRAVEL = 0.4
 """Largest way of a body or a boundary in one step [cells]: what a step may do to a particle (`advance.SAFE_CELLS`)."""
 
-SINGLE_SHARE = 1e-5
+SINGLE_FRACTION = 1e-5
 """Smallest cell over the largest coordinate in single precision: places are then rounded to 0.6 % of a cell."""
 
 BYTES_PER_PARTICLE, BYTES_PER_NODE = 200, 72
@@ -47,8 +47,8 @@ def check_bodies(scene) -> None:
             fitting = f"{0.5 / body.seeding.particles_per_axis} for this seeding"
             remedy = "particle domains would overlap or leave gaps"
             raise refuse("shape.half_width", scene.shape.half_width, fitting, remedy)
-    if count > MOST:
-        most = f"such that bodies have at most {MOST:.3g} particles, not {count:.3g}"
+    if count > MAX_COUNT:
+        most = f"such that bodies have at most {MAX_COUNT:.3g} particles, not {count:.3g}"
         raise refuse("domain.dx", scene.domain.dx, most)
 
 
@@ -68,8 +68,8 @@ def check_memory(scene) -> None:
 def check_precision(scene, precision: str) -> None:
     """Refuse single precision where it cannot tell places within a cell: it rounds them to 6e-8 of a coordinate."""
     far = scene.domain.farthest
-    if precision == "f32" and not scene.domain.dx >= SINGLE_SHARE * far:
-        allowed = f"'f64' where dx is less than {SINGLE_SHARE:g} of the largest coordinate, {far:g} m"
+    if precision == "f32" and not scene.domain.dx >= SINGLE_FRACTION * far:
+        allowed = f"'f64' where dx is less than {SINGLE_FRACTION:g} of the largest coordinate, {far:g} m"
         raise refuse("precision", precision, allowed, "or move the domain to the origin")
 
 
@@ -121,8 +121,8 @@ def check_loading(scene) -> None:
         raise SceneError("start = Press stops the platens itself: give t_end, hold included, no strain_end")
     if isinstance(loading.start, (Ramp, Press)) and loading.platens:
         transits = loading.start.time * scene.wave_speed / loading.height
-        if transits < LEAST_TRANSITS * (1.0 - 1e-9):
-            least = f"at least {LEAST_TRANSITS * loading.height / scene.wave_speed:.4g} s, 5 wave transits"
+        if transits < MIN_TRANSITS * (1.0 - 1e-9):
+            least = f"at least {MIN_TRANSITS * loading.height / scene.wave_speed:.4g} s, 5 wave transits"
             raise refuse("start.time", loading.start.time, least)
 
 
@@ -162,8 +162,8 @@ def _near_rock(scene, point: tuple[float, ...]) -> bool:
 
 def check_motion(scene) -> None:
     """Nothing may start faster than a step can follow."""
-    most = FASTEST * scene.domain.dx / scene.dt
-    allowed = f"such that a step of {scene.dt:.4g} s moves nothing by more than {FASTEST:g} cells, {most:.4g} m/s"
+    most = MAX_TRAVEL * scene.domain.dx / scene.dt
+    allowed = f"such that a step of {scene.dt:.4g} s moves nothing by more than {MAX_TRAVEL:g} cells, {most:.4g} m/s"
     for k, boundary in enumerate(scene.loading.boundaries):
         if not abs(boundary.speed) <= most:
             raise refuse(f"boundaries[{k}].speed", boundary.speed, allowed)
@@ -183,10 +183,10 @@ def check_cracks(rock, shape, dim: int, dx: float) -> None:
     law = rock.after_failure
     if dim not in law.dimensions:
         raise refuse("rock.after_failure", law, f"isotropic in {dim}D", "use CompressionOnly, Void or Clipped")
-    if rock.averaging.acts:
+    if rock.nonlocal_mean.acts:
         if not law.oriented:
             remedy = "use Local() or after_failure = Directional(...)"
-            raise refuse("rock.averaging", rock.averaging, "Local with the paper's laws after failure", remedy)
-        rock.averaging.check(dx, shape.variance)
+            raise refuse("rock.nonlocal_mean", rock.nonlocal_mean, "Local with the paper's laws after failure", remedy)
+        rock.nonlocal_mean.check(dx, shape.variance)
     if rock.criterion.breaks:
         law.check(rock, shape, dx)

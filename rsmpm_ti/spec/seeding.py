@@ -26,7 +26,7 @@ class Seeds(NamedTuple):
 SAMPLES = 16
 """Sample points per axis by which a sub-cell that an edge cuts is measured: the edge's place to 1/32 of it."""
 
-LEAST_SHARE = 0.3
+MIN_FRACTION = 0.3
 """A cut sub-cell with less of its volume inside joins a neighbour: small particles at a face would fail by noise."""
 
 
@@ -57,14 +57,14 @@ def _cut_cells(region, origin: np.ndarray, spacing: float) -> Seeds:
     lower, upper = region.bounds()
     axes = _axes(lower, upper, origin, spacing)
     x, dim = _points(axes), len(axes)
-    share, moment = _shares(region, x, spacing)
-    _merge_slivers(share, moment, x, [len(axis) for axis in axes])
-    filled = share > 0.0
-    return Seeds(x[filled] + moment[filled] / share[filled][:, None], share[filled] * spacing**dim)
+    fraction, moment = _fractions(region, x, spacing)
+    _merge_slivers(fraction, moment, x, [len(axis) for axis in axes])
+    filled = fraction > 0.0
+    return Seeds(x[filled] + moment[filled] / fraction[filled][:, None], fraction[filled] * spacing**dim)
 
 
-def _shares(region, x: np.ndarray, spacing: float) -> tuple[np.ndarray, np.ndarray]:
-    """Share of each sub-cell's volume inside a region [n], and that share's first moment about the centre [n, dim]."""
+def _fractions(region, x: np.ndarray, spacing: float) -> tuple[np.ndarray, np.ndarray]:
+    """Fraction of each sub-cell's volume inside a region [n], and its first moment about the centre [n, dim]."""
     dim = x.shape[1]
     corners = np.array(list(itertools.product((-0.5, 0.0, 0.5), repeat=dim))) * (1.0 - 1e-6) * spacing
     inside = np.array([region.contains(x + corner) for corner in corners])
@@ -75,27 +75,27 @@ def _shares(region, x: np.ndarray, spacing: float) -> tuple[np.ndarray, np.ndarr
         held = region.contains(x[cut] + sample)
         count += held
         total += held[:, None] * np.array(sample)
-    share, moment = inside.all(axis=0).astype(float), np.zeros((len(x), dim))
-    share[cut], moment[cut] = count / SAMPLES**dim, total / SAMPLES**dim
-    return share, moment
+    fraction, moment = inside.all(axis=0).astype(float), np.zeros((len(x), dim))
+    fraction[cut], moment[cut] = count / SAMPLES**dim, total / SAMPLES**dim
+    return fraction, moment
 
 
-def _merge_slivers(share: np.ndarray, moment: np.ndarray, x: np.ndarray, counts: list[int]) -> None:
+def _merge_slivers(fraction: np.ndarray, moment: np.ndarray, x: np.ndarray, counts: list[int]) -> None:
     """Give the material of sub-cells below LEAST_SHARE to the fullest neighbour along an axis; in place."""
-    slivers = np.flatnonzero((share > 0.0) & (share < LEAST_SHARE))
-    place = np.stack(np.unravel_index(slivers, counts, order="F"), axis=1)
-    best, fullest = np.full(len(slivers), -1), np.full(len(slivers), LEAST_SHARE)
+    slivers = np.flatnonzero((fraction > 0.0) & (fraction < MIN_FRACTION))
+    position = np.stack(np.unravel_index(slivers, counts, order="F"), axis=1)
+    best, fullest = np.full(len(slivers), -1), np.full(len(slivers), MIN_FRACTION)
     for d, side in itertools.product(range(len(counts)), (-1, 1)):
-        beside = place.copy()
+        beside = position.copy()
         beside[:, d] += side
         there = (beside[:, d] >= 0) & (beside[:, d] < counts[d])
         index = np.ravel_multi_index(beside.T, counts, mode="clip", order="F")
-        fuller = there & (share[index] > fullest)
-        best[fuller], fullest[fuller] = index[fuller], share[index[fuller]]
+        fuller = there & (fraction[index] > fullest)
+        best[fuller], fullest[fuller] = index[fuller], fraction[index[fuller]]
     giving, taking = slivers[best >= 0], best[best >= 0]
-    np.add.at(moment, taking, moment[giving] + share[giving][:, None] * (x[giving] - x[taking]))
-    np.add.at(share, taking, share[giving])
-    share[giving] = 0.0
+    np.add.at(moment, taking, moment[giving] + fraction[giving][:, None] * (x[giving] - x[taking]))
+    np.add.at(fraction, taking, fraction[giving])
+    fraction[giving] = 0.0
 
 
 @checked("seeding")

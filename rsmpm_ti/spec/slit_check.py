@@ -11,7 +11,7 @@ from rsmpm_ti.spec.regions import Slit
 from rsmpm_ti.spec.seeding import Seeds
 
 BRIDGE_LIMIT = 0.02
-"""Largest share of a full node's mass that both faces of a slit may have in common.
+"""Largest fraction of a full node's mass that both faces of a slit may have in common.
 
 A slit of two cells at 45 degrees on a lattice leaves 1/64 = 0.016 on its diagonal nodes with linear functions, which
 a static solution shows to be a flaw (docs/references.md, section 15); one of one cell leaves 0.11 and is not.
@@ -19,7 +19,7 @@ a static solution shows to be a flaw (docs/references.md, section 15); one of on
 
 
 def slit_bridge(seeds: Seeds, slit: Slit, shape, dx: float, origin: np.ndarray) -> float:
-    """Largest share of a full node's mass that both faces of a slit put on one node, away from the slit's ends.
+    """Largest fraction of a full node's mass that both faces of a slit put on one node, away from the slit's ends.
 
     `seeds` are the particles of the cut body. 0 means that no node sees both faces.
     """
@@ -37,10 +37,10 @@ def slit_bridge(seeds: Seeds, slit: Slit, shape, dx: float, origin: np.ndarray) 
         node = base + np.array(offset)
         w = np.prod(shape.profile((x - origin[:2]) / dx - node), axis=1)
         np.add.at(mass, (side.astype(int), node[:, 0], node[:, 1]), w * mass_p)
-    share = mass.min(axis=0)
+    fraction = mass.min(axis=0)
     nodes = np.stack(np.meshgrid(*(np.arange(k) for k in n), indexing="ij"), axis=-1).reshape(-1, 2) * dx + origin[:2]
     inner = np.abs(slit.frame(nodes)[:, 0]) < 0.5 * slit.length - math.sqrt(2.0) * reach
-    return float(share.ravel()[inner].max(initial=0.0))
+    return float(fraction.ravel()[inner].max(initial=0.0))
 
 
 def check_slit(region, slit: Slit, seeding, shape, dx: float, origin: np.ndarray) -> None:

@@ -31,14 +31,14 @@ LOOKS = 1000
 GROWN = 5e-3
 """A wing is measured when it is this long [m]."""
 
-NEAR = 6e-3
+TIP_DISTANCE = 6e-3
 """What cracks farther than this from the flaw's ends [m] is the platens' doing."""
 
 MIDDLE = 0.3
-"""A crack began in the middle of the flaw if its place along the flaw is less than this share of half its length."""
+"""A crack began in the middle of the flaw if its place along the flaw is less than this fraction of half its length."""
 
 LAST = 0.2
-"""The load at onset is read from a line through this last share of the loading before it."""
+"""The load at onset is read from a line through this last fraction of the loading before it."""
 
 
 def flawed_scene(*, specimen: str, angle: float, dx: float, paper: bool) -> Scene:
@@ -59,9 +59,9 @@ def flawed_scene(*, specimen: str, angle: float, dx: float, paper: bool) -> Scen
 
 
 def near_flaw(slit: Slit, x: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Which of places x [n, 2] lie near a flaw, bool [n]; and those, along and across it from its middle [k, 2] [m]."""
+    """Which of positions x [n, 2] lie near a flaw, bool [n]; and those, along and across it [k, 2] [m]."""
     local = slit.frame(x)
-    near = np.linalg.norm(local, axis=1) < 0.5 * slit.length + NEAR
+    near = np.linalg.norm(local, axis=1) < 0.5 * slit.length + TIP_DISTANCE
     return near, local[near]
 
 
@@ -87,8 +87,8 @@ def crack(*, specimen: str, angle: float, dx: float, paper: bool) -> dict:
             break
         history.record(drive.survey)
         if len(begun) == 0:
-            places, normals = lost_in_tension(drive)
-            near, begun = near_flaw(slit, places)
+            positions, normals = lost_in_tension(drive)
+            near, begun = near_flaw(slit, positions)
             if len(begun):
                 onset, normal = drive.clock.time, normals[near] - np.radians(slit.angle)
         elif drive.sim.events.count[None]:
@@ -113,18 +113,17 @@ def crack(*, specimen: str, angle: float, dx: float, paper: bool) -> dict:
 
 
 def lost_in_tension(drive: Drive) -> tuple[np.ndarray, np.ndarray]:
-    """Places [k, 2] [m] of the particles that have begun to lose strength in tension, and normals of their cracks [k]
-    [rad]."""
+    """Positions [k, 2] [m] of particles that have begun to lose strength in tension, and their normals [k] [rad]."""
     particles = drive.sim.particles
     lost = particles.mode.to_numpy() == TENSION
     if not lost.any():
         return np.zeros((0, 2)), np.zeros(0)
-    place = (particles.reference.to_numpy() + particles.u.to_numpy())[lost].astype(float)
-    normal = np.full(len(place), np.nan)
+    position = (particles.reference.to_numpy() + particles.u.to_numpy())[lost].astype(float)
+    normal = np.full(len(position), np.nan)
     if particles.history.has_normal:
         across, up = particles.history.crack_normal.to_numpy()[lost].astype(float).T
         normal = np.arctan2(up, across)
-    return place, normal
+    return position, normal
 
 
 @dataclass(frozen=True)
@@ -136,7 +135,7 @@ class WingStart:
     angle: float
 
 
-def place_along(begun: np.ndarray, half: float) -> float:
+def position_along(begun: np.ndarray, half: float) -> float:
     """Mean distance from the flaw's middle, along it, over half its length [m], of places begun [k, 2] [m]."""
     return float(np.abs(begun[:, 0]).mean() / half)
 
@@ -146,9 +145,9 @@ def wings(begun: np.ndarray, x: np.ndarray, spacing: float, half: float) -> tupl
 
     A crack is what is connected to the first failure on its side: of a flaw cracked in its middle the sides are those
     of its faces, else of its ends. The flaw's plane is taken outwards, from its middle to the end on that side. Lengths
-    in metres: places [k, 2] and [e, 2] as in `crack`, particle spacing, half the flaw's length.
+    in metres: positions [k, 2] and [e, 2] as in `crack`, particle spacing, half the flaw's length.
     """
-    across = place_along(begun, half) < MIDDLE
+    across = position_along(begun, half) < MIDDLE
     side = np.array([0.0, 1.0]) if across else begun[0] / np.linalg.norm(begun[0])
     return tuple(_wing(x[sign * (x @ side) > 0.0], sign * side, spacing) for sign in (1.0, -1.0))
 
@@ -185,4 +184,4 @@ def read_beginning(result: dict) -> Beginning:
     first = float(crack_directions(begun, result["normal"], half - 0.5 * WIDTH).mean())
     pair = wings(begun, result["x"], float(result["spacing"]), half)
     angles = [wing.angle for wing in pair if wing.length >= GROWN]
-    return Beginning(stress, place_along(begun, half), first, float(np.mean(angles or [np.nan])))
+    return Beginning(stress, position_along(begun, half), first, float(np.mean(angles or [np.nan])))

@@ -26,7 +26,7 @@ SEAM_WIDTH, SEAM_STRENGTH = 10e-3, 0.7
 SIZES = (1e-3, 0.5e-3, 0.25e-3)
 
 FALL = 0.5
-"""A strip has broken when its stress is below this share of the largest so far: what comes after is waves."""
+"""A strip has broken when its stress is below this fraction of the largest so far: what comes after is waves."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -72,7 +72,7 @@ def pull_notched(*, dx: float, paper: bool) -> dict:
     """Two notches of 3 cells; with the lab's rock or with the paper's rule."""
     rock = load_scene("cube_lab", dx=dx).rock
     if paper:
-        rock = replace(rock, after_failure=CompressionOnly(), averaging=Local())
+        rock = replace(rock, after_failure=CompressionOnly(), nonlocal_mean=Local())
     half = 1.5 * dx
     notches = tuple(
         Box(lower=(a, 0.5 * HEIGHT - half), upper=(b, 0.5 * HEIGHT + half))

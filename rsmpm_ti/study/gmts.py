@@ -46,8 +46,8 @@ DISC_T = np.array(
 """Angle of the flaw from the line of the load, T* of a central crack with a/R = 0.3 in a disc: docs/references.md,
 section 8."""
 
-LEAST, MOST = 1e-4, 1.0
-"""A critical distance is looked for between these shares of a."""
+MIN_DISTANCE, MAX_DISTANCE = 1e-4, 1.0
+"""A critical distance is looked for between these fractions of a."""
 
 
 def even_spline(angle: np.ndarray, value: np.ndarray) -> CubicSpline:
@@ -107,40 +107,40 @@ def critical_distance(sif: tuple[float, float, float], a: float, factor: float) 
     sif: N_I, N_II, T*. NaN unless that stress falls from above `factor` to below it between LEAST a and MOST a.
     """
 
-    def excess(share: float) -> float:
-        return tip(sif, share)[1] - factor
+    def excess(fraction: float) -> float:
+        return tip(sif, fraction)[1] - factor
 
-    if not excess(LEAST) > 0.0 > excess(MOST):
+    if not excess(MIN_DISTANCE) > 0.0 > excess(MAX_DISTANCE):
         return math.nan
-    return a * brentq(excess, LEAST, MOST, rtol=1e-10)
+    return a * brentq(excess, MIN_DISTANCE, MAX_DISTANCE, rtol=1e-10)
 
 
-def tip(sif: tuple[float, float, float], share: float) -> tuple[float, float]:
+def tip(sif: tuple[float, float, float], fraction: float) -> tuple[float, float]:
     """`initiation` of a crack with sif = (N_I, N_II, T*), over the nominal stress, with r_c = share a."""
-    return initiation(*(n * math.sqrt(math.pi) for n in sif[:2]), sif[2], share)
+    return initiation(*(n * math.sqrt(math.pi) for n in sif[:2]), sif[2], fraction)
 
 
-def inglis(place: float, share: float, load: float) -> float:
+def inglis(position: float, fraction: float, load: float) -> float:
     """Stress along the face of an elliptic hole over the stress s that pulls an infinite plate.
 
     place: the point (a cos, b sin) of the face, share = b/a, load: angle between pull and major axis, [degrees].
     s_tt = s [sinh 2x + cos 2load - e^(2x) cos 2(load - place)]/(cosh 2x - cos 2place), tanh x = b/a.
     Inglis (1913), Trans. Inst. Naval Arch. 55:219, as in Jaeger, Cook & Zimmerman (2007), eq. 8.202.
     """
-    x, e, b = math.atanh(share), math.radians(place), math.radians(load)
+    x, e, b = math.atanh(fraction), math.radians(position), math.radians(load)
     top = math.sinh(2.0 * x) + math.cos(2.0 * b) - math.exp(2.0 * x) * math.cos(2.0 * (b - e))
     return top / (math.cosh(2.0 * x) - math.cos(2.0 * e))
 
 
-def mid_face_cube(angle: float, share: float) -> float:
+def mid_face_cube(angle: float, fraction: float) -> float:
     """Stress along the flaw in the middle of its face over s: Inglis, so of an infinite plate; 1 at 0 degrees.
 
     share: width over length of the flaw. No mean over a length is taken: inwards of a flat flaw across the load it is
     s (1 - sin(t) + sin(t) cos(t)^2), tan(t) = depth/a, level at the face. Beside a slot it falls sooner.
     """
-    return -inglis(90.0, share, 90.0 - angle)
+    return -inglis(90.0, fraction, 90.0 - angle)
 
 
-def mid_face_disc(angle: float, share: float) -> float:
+def mid_face_disc(angle: float, fraction: float) -> float:
     """The same in the disc over s0, as if its centre's stress, 1 across the load and -3 along it, were everywhere."""
-    return inglis(90.0, share, 90.0 - angle) - 3.0 * inglis(90.0, share, angle)
+    return inglis(90.0, fraction, 90.0 - angle) - 3.0 * inglis(90.0, fraction, angle)

@@ -69,7 +69,7 @@ def read_wing(result: dict, name: str, dx: float) -> Wing:
     bins = np.floor(x[:, 1] / BIN).astype(int)
     height = np.unique(bins)
     leading = [x[bins == b][: round(4.0 * BIN / dx)] for b in height]
-    path = np.stack([[places[:, 0].mean() for places in leading], (height + 0.5) * BIN], axis=1)
+    path = np.stack([[positions[:, 0].mean() for positions in leading], (height + 0.5) * BIN], axis=1)
     early = np.concatenate(leading)
     early = early[np.linalg.norm(early - x[0], axis=1) < FIT]
     left = np.nan
@@ -85,7 +85,7 @@ def spread(paths: list[np.ndarray]) -> tuple[float, float]:
     for path in paths:
         for lateral, along in path:
             by_bin.setdefault(round(along / BIN - 0.5), []).append(lateral)
-    gaps = np.array([abs(a - b) for places in by_bin.values() for a, b in itertools.combinations(places, 2)])
+    gaps = np.array([abs(a - b) for positions in by_bin.values() for a, b in itertools.combinations(positions, 2)])
     if not len(gaps):
         return np.nan, np.nan
     return float(gaps.max()), float(np.sqrt((gaps**2).mean()))

@@ -68,11 +68,11 @@ def first_crack(*, specimen: str, angle: float, mesh: Spacing = MESH, pixel: flo
     beside = np.hypot(np.maximum(np.abs(along) - 1e3 * half, 0.0), across) < 0.5 * AROUND
     k = np.unravel_index(np.where(beside, largest, -np.inf).argmax(), largest.shape)
     normal = 0.5 * np.arctan2(2.0 * xy[k], xx[k] - yy[k]) - np.radians(upright)
-    place = np.array([[along[k], across[k]]])
+    position = np.array([[along[k], across[k]]])
     return {
         "stress": float(TENSILE / largest[k]),
         "along": float(abs(along[k]) / (1e3 * half)),
-        "first": float(crack_directions(place, np.array([normal]), 1e3 * (half - 0.5 * WIDTH))[0]),
+        "first": float(crack_directions(position, np.array([normal]), 1e3 * (half - 0.5 * WIDTH))[0]),
     }
 
 

@@ -78,7 +78,7 @@ def turned_scene(*, angle: float, dx: float, seed: int, paper: bool, end: float,
     seeding = Jittered(seed=seed, fitted=True)
     rate = 800e6
     if paper:
-        rock = replace(rock, after_failure=CompressionOnly(), averaging=Local())
+        rock = replace(rock, after_failure=CompressionOnly(), nonlocal_mean=Local())
         seeding = Lattice()
     traction = EndTraction(angle=angle, density=rock.density, rate=rate)
     return Scene(
@@ -94,7 +94,7 @@ def turned_scene(*, angle: float, dx: float, seed: int, paper: bool, end: float,
 def grow(*, angle: float, dx: float, seed: int, paper: bool, end: float, time_scale: float) -> dict:
     """Load until both wings are GROWN long, or up to `end` [Pa].
 
-    Of each wing, all turned back: `failed`, places [n, 2] of what failed in tension, in order of time [m]; `first`,
+    Of each wing, all turned back: `failed`, positions [n, 2] of what failed in tension, in order of time [m]; `first`,
     angles from the flaw's plane of the first cracks at its end, seen when they had just begun [k] [degrees], none by
     the paper's rule. `onset`: load when strength is first lost in tension near that end; `shear`: when the first
     particle fails in shear; NaN if none does. `load` and `wings`: at every look, with the wings' lengths [k, 2] [m];
@@ -116,7 +116,7 @@ def grow(*, angle: float, dx: float, seed: int, paper: bool, end: float, time_sc
         if len(onset) < len(ENDS):
             first = first_cracks(drive, flaw) | first
             onset = dict.fromkeys(first, load[-1]) | onset
-        failed = failed_places(drive, angle)
+        failed = failed_positions(drive, angle)
         wings.append([side[:, 1].max(initial=tip) - tip for side in failed.values()])
         if stopped or min(wings[-1]) > GROWN:
             break
@@ -131,14 +131,14 @@ def grow(*, angle: float, dx: float, seed: int, paper: bool, end: float, time_sc
         "stopped": np.array(stopped),
         **{f"onset_{name}": np.array(onset.get(name, np.nan)) for name in ENDS},
         **{f"first_{name}": angles for name, angles in first.items() if not paper},
-        **{f"failed_{name}": places for name, places in failed_places(drive, angle).items()},
+        **{f"failed_{name}": positions for name, positions in failed_positions(drive, angle).items()},
     }
 
 
 def first_cracks(drive: Drive, flaw: Slit) -> dict[str, np.ndarray]:
     """For each end of the flaw where cracks have begun: their angles from the flaw's plane [k] [degrees]."""
-    places, normals = lost_in_tension(drive)
-    near, begun = near_flaw(flaw, places)
+    positions, normals = lost_in_tension(drive)
+    near, begun = near_flaw(flaw, positions)
     normals = normals[near] - math.radians(flaw.angle)
     found = {}
     for name, sign in ENDS.items():
@@ -148,7 +148,7 @@ def first_cracks(drive: Drive, flaw: Slit) -> dict[str, np.ndarray]:
     return found
 
 
-def failed_places(drive: Drive, angle: float) -> dict[str, np.ndarray]:
+def failed_positions(drive: Drive, angle: float) -> dict[str, np.ndarray]:
     """For each end of the flaw: places of tensile failures in its half of the specimen, turned back [n, 2] [m]."""
     turn = math.radians(angle)
     back = np.array([[math.cos(turn), -math.sin(turn)], [math.sin(turn), math.cos(turn)]])

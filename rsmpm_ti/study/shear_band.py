@@ -31,12 +31,12 @@ class Strip:
     (-sin, cos) of that angle [m]; inside: bool [e]."""
 
     angle: float
-    place: float
+    position: float
     inside: np.ndarray
 
 
 def fullest_strip(x: np.ndarray, lowest: float, highest: float, width: float = WIDTH) -> Strip:
-    """The strip `width` [m] wide that holds most of the places x [e, 2] [m], at an angle in [lowest, highest] degrees.
+    """The strip `width` [m] wide that holds most of positions x [e, 2] [m], at an angle in [lowest, highest] degrees.
 
     Straight lines by voting (Duda & Hart 1972, Commun. ACM 15:11): branches and bands of the other sense, which would
     turn a principal axis, have no say. Of equally full strips, the first.
@@ -48,8 +48,8 @@ def fullest_strip(x: np.ndarray, lowest: float, highest: float, width: float = W
         if held.max() > most:
             first = int(held.argmax())
             most, best = int(held[first]), (float(angle), float(across[first] + 0.5 * width))
-    angle, place = best
-    return Strip(angle=angle, place=place, inside=np.abs(x @ _normal(angle) - place) <= 0.5 * width)
+    angle, position = best
+    return Strip(angle=angle, position=position, inside=np.abs(x @ _normal(angle) - position) <= 0.5 * width)
 
 
 def _normal(angle: float) -> np.ndarray:

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from broken_bands import SPACING, failures
 
-from rsmpm_ti.analysis.acoustic_emission import FEWEST, b_value, gather
+from rsmpm_ti.analysis.acoustic_emission import MIN_PARTICLES, b_value, gather
 from rsmpm_ti.analysis.crack_path import REACH
 
 SPEED = 1700.0
@@ -47,13 +47,15 @@ def test_events_that_the_sensors_miss_do_not_lower_b():
     assert abs(found.b - 1.0) < 3.0 * found.error + 0.05  # the bin's edge may lie a part of a bin too low
 
 
-@pytest.mark.parametrize("magnitude", [np.zeros(0), np.full(FEWEST - 1, -3.0), np.full(100, -3.0), np.full(50, np.nan)])
+@pytest.mark.parametrize(
+    "magnitude", [np.zeros(0), np.full(MIN_PARTICLES - 1, -3.0), np.full(100, -3.0), np.full(50, np.nan)]
+)
 def test_no_b_where_there_is_none(magnitude):
     assert b_value(magnitude) is None
 
 
 def test_no_b_from_fewer_than_twenty_complete_events():
-    magnitude = np.concatenate([np.linspace(-4.0, -3.05, 10), np.full(FEWEST - 2, -3.0), [-2.9]])
+    magnitude = np.concatenate([np.linspace(-4.0, -3.05, 10), np.full(MIN_PARTICLES - 2, -3.0), [-2.9]])
     assert b_value(magnitude) is None
     assert b_value(np.append(magnitude, -2.8)) is not None
 
@@ -84,11 +86,11 @@ def test_event_holds_the_sums_and_the_first_failure_of_its_chain():
     table = failures(x, time=time, mode=np.array([2, 1, 1, 1, 2]), released=np.array([1e-3, 1.0, 2.0, 3.0, 4.0]))
     found = gather(table, SPACING, SPEED)
     np.testing.assert_array_equal(found.time, [0.0, 1e-3])
-    np.testing.assert_array_equal(found.place, [[5.0, 5.0], [0.0, 0.0]])
+    np.testing.assert_array_equal(found.position, [[5.0, 5.0], [0.0, 0.0]])
     np.testing.assert_allclose(found.energy, [1e-3, 10.0])
     np.testing.assert_allclose(found.magnitude, [-2.0, 2.0 / 3.0])  # (2/3) log10(E / 1 J)
     np.testing.assert_array_equal(found.failures, [1, 4])
-    np.testing.assert_allclose(found.shear_share, [1.0, 0.25])
+    np.testing.assert_allclose(found.shear_fraction, [1.0, 0.25])
 
 
 def test_particle_that_fails_twice_is_one_particle_and_two_failures():
@@ -104,4 +106,4 @@ def test_event_that_released_nothing_has_no_magnitude():
 @pytest.mark.parametrize("dim", [2, 3])
 def test_no_failures_make_no_events(dim):
     found = gather(failures(np.zeros((0, dim))), SPACING, SPEED)
-    assert len(found) == 0 and found.place.shape == (0, dim)
+    assert len(found) == 0 and found.position.shape == (0, dim)

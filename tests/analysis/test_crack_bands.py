@@ -12,7 +12,7 @@ from rsmpm_ti.analysis.crack_opening import jumps
 from rsmpm_ti.analysis.crack_path import growth, rayleigh_speed, tip_speed
 from rsmpm_ti.analysis.flaw_tips import flaw_tips, initiations
 from rsmpm_ti.analysis.load_curve import load_at
-from rsmpm_ti.analysis.wing_cracks import FEWEST
+from rsmpm_ti.analysis.wing_cracks import MIN_PARTICLES
 from rsmpm_ti.spec.regions import Slit
 
 FLAWS = (
@@ -31,7 +31,7 @@ def measured(table, tips=TIPS, time_scale=1.0):
 def wing(tip, leaving: float, length: float = 8e-3) -> np.ndarray:
     """A band from a flaw tip, `leaving` degrees from the flaw's continuation."""
     heading = np.degrees(np.arctan2(tip.outward[1], tip.outward[0])) + leaving
-    return strip(heading, length, 3.0, start=tip.place)
+    return strip(heading, length, 3.0, start=tip.position)
 
 
 def in_turn(parts, delay=1e-4, interval=1e-6):
@@ -43,7 +43,7 @@ def in_turn(parts, delay=1e-4, interval=1e-6):
 
 def test_tips_are_the_ends_of_every_flaw():
     assert [tip.name for tip in TIPS] == ["0+", "0-", "1+", "1-"]
-    np.testing.assert_allclose(TIPS[1].place, (0.02 - 0.006 * np.cos(np.pi / 6), 0.03 - 0.003))
+    np.testing.assert_allclose(TIPS[1].position, (0.02 - 0.006 * np.cos(np.pi / 6), 0.03 - 0.003))
     np.testing.assert_allclose(TIPS[2].outward, (-0.5, np.sqrt(0.75)))
 
 
@@ -73,15 +73,15 @@ def test_cracks_come_in_the_order_in_which_they_began():
     early, late = strip(0.0, 5e-3, 2.0), strip(0.0, 8e-3, 2.0, start=(0.0, 0.05))
     table = in_turn([late, early], delay=-5e-5)  # the second list begins first
     cracks = measured(table)
-    assert [crack.origin.place[1] > 0.02 for crack in cracks] == [False, True]
+    assert [crack.origin.position[1] > 0.02 for crack in cracks] == [False, True]
     assert cracks[0].origin.time == table.time[0]
 
 
 def test_fewer_particles_than_a_line_needs_are_no_crack_even_when_all_fail_twice():
-    few = strip(0.0, 5e-3, 1.2)[: FEWEST - 1]
-    twice = failures(np.concatenate([few, few]), ids=np.tile(np.arange(FEWEST - 1), 2))
+    few = strip(0.0, 5e-3, 1.2)[: MIN_PARTICLES - 1]
+    twice = failures(np.concatenate([few, few]), ids=np.tile(np.arange(MIN_PARTICLES - 1), 2))
     assert measured(failures(few)) == [] and measured(twice) == []
-    assert len(measured(failures(strip(0.0, 5e-3, 1.2)[:FEWEST]))) == 1
+    assert len(measured(failures(strip(0.0, 5e-3, 1.2)[:MIN_PARTICLES]))) == 1
 
 
 def test_counts_and_energies_by_mode_and_particles_that_fail_twice():
@@ -103,7 +103,7 @@ def test_counts_and_energies_by_mode_and_particles_that_fail_twice():
 def test_first_failure_gives_mode_time_and_place_of_origin():
     x = strip(0.0, 8e-3, 2.0)
     (crack,) = measured(failures(x, time=np.arange(len(x))[::-1] + 3.0, mode=np.where(np.arange(len(x)) > 60, 2, 1)))
-    np.testing.assert_array_equal(crack.origin.place, x[-1])
+    np.testing.assert_array_equal(crack.origin.position, x[-1])
     assert crack.origin.time == 3.0 and crack.origin.mode == 2
 
 
@@ -171,11 +171,11 @@ def test_initiation_has_an_entry_for_every_tip():
     assert entries[0]["stress_Pa"] == pytest.approx(2e6, rel=1e-6)
     assert entries[0]["angle_deg"] == pytest.approx(40.0, abs=3.0)
     assert (entries[0]["crack"], entries[3]["crack"]) == (1, 0)
-    np.testing.assert_allclose(entries[3]["position_m"], TIPS[3].place, atol=2.0 * SPACING)
+    np.testing.assert_allclose(entries[3]["position_m"], TIPS[3].position, atol=2.0 * SPACING)
 
 
 def test_a_stray_failure_near_a_tip_is_no_initiation():
-    stray = TIPS[0].place[None, :] + (0.0, -2e-3)
+    stray = TIPS[0].position[None, :] + (0.0, -2e-3)
     table = in_turn([stray, wing(TIPS[0], 70.0)])
     bands, _ = find_bands(table, SPACING)
     entry = initiations(table, bands, TIPS, history())[0]
@@ -197,10 +197,10 @@ def test_what_breaks_at_the_tip_later_does_not_turn_the_angle_of_leaving():
 
 def test_two_bands_that_meet_are_one_crack_with_two_initiations():
     """A bridge of rock between flaws breaks from both sides: one crack, which began at the tip that broke first."""
-    gap = TIPS[2].place - TIPS[0].place
+    gap = TIPS[2].position - TIPS[0].position
     heading, length = np.degrees(np.arctan2(gap[1], gap[0])), np.linalg.norm(gap)
-    x = strip(heading, length, 3.0, start=TIPS[0].place)
-    along = (x - TIPS[0].place) @ gap / length
+    x = strip(heading, length, 3.0, start=TIPS[0].position)
+    along = (x - TIPS[0].position) @ gap / length
     table = failures(x, time=np.where(along < 0.5 * length, along, 1e-3 + length - along))
     bands, _ = find_bands(table, SPACING)
     (crack,) = measured(table)
@@ -218,7 +218,7 @@ def test_failures_of_a_solid_have_bands_but_no_course():
     x = np.concatenate([np.column_stack([flat, np.full(len(flat), z)]) for z in (0.0, SPACING)])
     time = np.tile(flat[:, 0] / 300.0, 2)
     (crack,) = measured(failures(x, time=time), tips=())
-    assert crack.course is None and crack.origin.place.shape == (3,)
+    assert crack.course is None and crack.origin.position.shape == (3,)
     assert crack.length_at[-1] == pytest.approx(8e-3, rel=0.05)
 
 

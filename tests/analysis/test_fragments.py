@@ -13,7 +13,7 @@ BLOCK = lattice((0.0, 0.0), (10e-3, 20e-3))
 def test_specimen_without_failure_is_one_fragment_with_all_its_mass():
     found = find_fragments(snapshot(scattered(BLOCK)), DENSITY)
     (piece,) = found.pieces
-    assert found.dust is None and found.largest_share == pytest.approx(1.0)
+    assert found.dust is None and found.largest_fraction == pytest.approx(1.0)
     assert piece.particles == len(BLOCK)
     assert piece.mass == pytest.approx(DENSITY * 10e-3 * 20e-3)
     assert piece.diameter == pytest.approx(np.sqrt(4.0 * 10e-3 * 20e-3 / np.pi))
@@ -30,7 +30,7 @@ def test_a_row_of_failed_particles_cuts_in_two():
     np.testing.assert_allclose(small.velocity, [1.0, 0.0], atol=1e-12)
     np.testing.assert_allclose(large.velocity, [0.0, 2.0], atol=1e-12)
     np.testing.assert_allclose(small.centroid, [5e-3, 2.5e-3], atol=0.1 * SPACING)
-    assert found.largest_share == pytest.approx(59.0 / 80.0)  # of the whole specimen, its failed row included
+    assert found.largest_fraction == pytest.approx(59.0 / 80.0)  # of the whole specimen, its failed row included
 
 
 def test_a_band_that_ends_inside_cuts_nothing():
@@ -80,4 +80,4 @@ def test_particles_that_are_not_finite_are_left_out():
 
 def test_nothing_left_is_no_fragment():
     found = find_fragments(snapshot(BLOCK, np.ones(len(BLOCK))), DENSITY)
-    assert found.pieces == () and found.dust is None and found.largest_share is None
+    assert found.pieces == () and found.dust is None and found.largest_fraction is None

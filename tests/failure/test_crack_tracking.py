@@ -11,7 +11,7 @@ from harness import unit
 
 from rsmpm_ti.failure import crack_tracking as tracking
 from rsmpm_ti.failure.crack_tracking import evaluate_overload, track_cracks
-from rsmpm_ti.failure.nonlocal_fields import mark_overloaded, smooth_stress
+from rsmpm_ti.failure.nonlocal_fields import mark_overloaded, sum_nonlocal
 from rsmpm_ti.failure.stress_update import failure_by_own_stress
 from rsmpm_ti.fields.cell_order import sort_particles
 from rsmpm_ti.fields.grid import Grid
@@ -39,7 +39,7 @@ ROCK = Rock(
     criterion=MohrCoulomb(cohesion=5.95 * MPA, friction_angle=40.0, tensile_strength=2.0 * MPA),
     viscosity=NoViscosity(),
     after_failure=Directional(),
-    averaging=AVERAGING,
+    nonlocal_mean=AVERAGING,
 )
 
 
@@ -72,13 +72,13 @@ def rested(sim: Simulation) -> Simulation:
     return sim
 
 
-def places(sim: Simulation) -> np.ndarray:
+def positions(sim: Simulation) -> np.ndarray:
     return sim.particles.reference.to_numpy()
 
 
 def particle_near(sim: Simulation, x: float, y: float) -> int:
     """The particle nearest to a place [mm]."""
-    return int(np.hypot(*(places(sim) - 1e-3 * np.array([x, y])).T).argmin())
+    return int(np.hypot(*(positions(sim) - 1e-3 * np.array([x, y])).T).argmin())
 
 
 def pulled_along(angle: float, size: np.ndarray) -> np.ndarray:
@@ -90,7 +90,7 @@ def pulled_along(angle: float, size: np.ndarray) -> np.ndarray:
 def humps(sim: Simulation, centres: list[int], width: float = 3e-3, height: float = 3.0) -> np.ndarray:
     """Size of stress with a hump of `height` [MPa] at each of some particles, far from each other; its mean over DX
     is height/(1 + (DX/width)^2) at the top, 2.7 MPa."""
-    x = places(sim)
+    x = positions(sim)
     return sum(height * np.exp(-0.5 * np.sum((x - x[c]) ** 2, axis=1) / width**2) for c in centres)
 
 
@@ -104,7 +104,7 @@ def look(sim: Simulation, sigma: np.ndarray, time: float = 1.0) -> set[int]:
 
 def beside(sim: Simulation, crack: int, angle: float) -> np.ndarray:
     """Outside the wedge about the line of a crack with its normal at `angle` [degrees], and nearer than the radius."""
-    d = places(sim) - places(sim)[crack]
+    d = positions(sim) - positions(sim)[crack]
     n = np.array([math.cos(math.radians(angle)), math.sin(math.radians(angle))])
     across, along = np.abs(d @ n), np.abs(d @ [-n[1], n[0]])
     return (np.hypot(across, along) < RADIUS) & (across > SLOPE * along)
@@ -139,10 +139,10 @@ def test_crack_grows_from_its_ends_as_a_line():
     sigma, cracked = pulled_along(0.0, humps(sim, [top], width=4e-3)), []
     for time in range(12):
         cracked += look(sim, sigma, float(time))
-    d = np.abs(places(sim)[cracked] - places(sim)[top])
+    d = np.abs(positions(sim)[cracked] - positions(sim)[top])
     near = np.hypot(*d.T) < RADIUS
     assert len(cracked) > 8 and (d[near, 0] <= SLOPE * d[near, 1] + 1e-12).all()
-    assert np.ptp(places(sim)[cracked][near, 1]) > 0.9 * RADIUS  # along itself it has grown
+    assert np.ptp(positions(sim)[cracked][near, 1]) > 0.9 * RADIUS  # along itself it has grown
     assert sim.events.onset[None] == 0.0
 
 
@@ -193,11 +193,11 @@ def test_excluded_particle_fails_by_its_own_stress_if_that_would_open_the_crack_
 def test_overload_is_over_the_strength_of_the_particle_itself():
     sim = rested(simulation(Weibull(shape=10.0, reference_volume=0.25e-6, seed=2)))
     k = sim.particles.strength.to_numpy()
-    assert sim.means.weakest == pytest.approx(2.0 * MPA * k.min(), rel=1e-12)
+    assert sim.nonlocal_sums.weakest == pytest.approx(2.0 * MPA * k.min(), rel=1e-12)
     for stress in (1.99 * k.min(), 2.01 * k.min(), 1.8):
         sim.particles.sigma.from_numpy(pulled_along(0.0, np.full(len(k), stress)))
-        smooth_stress(sim)
-        mark_overloaded(sim, sim.means.weakest)
+        sum_nonlocal(sim)
+        mark_overloaded(sim, sim.nonlocal_sums.weakest)
         evaluate_overload(sim)
         load = stress / (2.0 * k)
         np.testing.assert_allclose(sim.particles.overload.to_numpy(), np.where(load >= 1.0, load, 0.0), rtol=1e-12)

@@ -51,7 +51,7 @@ def defined_in(module) -> set[str]:
 
 
 def test_every_law_of_a_crack_has_its_closed_form():
-    assert defined_in(softening) == set(SHARES), "give the share of strength of a new softening law in SHARES"
+    assert defined_in(softening) == set(SHARES), "give the fraction of strength of a new softening law in SHARES"
     assert defined_in(directional) == {"Directional"}
     fields = {field.name for field in dataclasses.fields(Directional)}
     assert fields == {"residual_friction_angle", "rotating", "softening"}, "LAWS leaves the new field at one value"
@@ -126,12 +126,14 @@ def test_shear_on_a_closed_crack_is_limited_by_friction_unless_the_crack_turns(r
         assert tau[shear < 0.55e-3] == pytest.approx(MU * shear[shear < 0.55e-3], abs=1e-3)
         assert tau.max() > 1.4 * PRESSURE * TAN_R
         return
-    share = float(SHARES[softening_name(law)](across(M * SHEARED[1:, 1], softening_name(law))[1].max(), TENSILE, G_F_I))
-    c, f = share * COHESION, share * TENSILE
+    fraction = float(
+        SHARES[softening_name(law)](across(M * SHEARED[1:, 1], softening_name(law))[1].max(), TENSILE, G_F_I)
+    )
+    c, f = fraction * COHESION, fraction * TENSILE
     limit = math.sqrt((c + PRESSURE * TAN_R) ** 2 - (c - f * TAN_R) ** 2)
     # linear softening and none have lost all, so the limit is friction; the tail's share is of the step before: 1 %
-    expected = np.minimum(MU * shear, limit if share > 0.0 else PRESSURE * TAN_R)
-    np.testing.assert_allclose(tau, expected, rtol=0.0, atol=0.01 * limit if share > 0.0 else 1e-3)
+    expected = np.minimum(MU * shear, limit if fraction > 0.0 else PRESSURE * TAN_R)
+    np.testing.assert_allclose(tau, expected, rtol=0.0, atol=0.01 * limit if fraction > 0.0 else 1e-3)
 
 
 @every_law
@@ -212,18 +214,18 @@ def test_directional_crack_in_3d_is_refused(law):
 
 @pytest.mark.parametrize("law", [CompressionOnly(), Void(), Clipped(tension_limit=0.0, compression_limit=1e6)])
 def test_mean_stress_with_a_law_of_the_paper_is_refused(law):
-    message = refusal(lambda: scene(after_failure=law, averaging=Nonlocal(length=2e-3)))
-    assert message.startswith("rock.averaging = Nonlocal(") and "Local" in message and "Directional" in message
-    assert scene(after_failure=law, averaging=Local()).rock.after_failure is law
+    message = refusal(lambda: scene(after_failure=law, nonlocal_mean=Nonlocal(length=2e-3)))
+    assert message.startswith("rock.nonlocal_mean = Nonlocal(") and "Local" in message and "Directional" in message
+    assert scene(after_failure=law, nonlocal_mean=Local()).rock.after_failure is law
 
 
 @pytest.mark.parametrize("shape", [Linear(), Gimp(), QuadraticBSpline()], ids=lambda s: type(s).__name__)
 def test_mean_over_less_than_the_grid_can_is_refused_with_a_dx_that_would_do(shape):
     least = math.sqrt(2.0 * shape.variance) * 1e-3
-    message = refusal(lambda: scene(shape=shape, averaging=Nonlocal(length=0.9 * least)))
+    message = refusal(lambda: scene(shape=shape, nonlocal_mean=Nonlocal(length=0.9 * least)))
     dx = float(re.search(r"dx of at most (\S+) m", message)[1])
-    assert message.startswith("rock.averaging.length = ") and dx == pytest.approx(0.9e-3, rel=1e-3)
-    assert scene(dx=0.999 * dx, shape=shape, averaging=Nonlocal(length=0.9 * least)).rock.averaging.acts
+    assert message.startswith("rock.nonlocal_mean.length = ") and dx == pytest.approx(0.9e-3, rel=1e-3)
+    assert scene(dx=0.999 * dx, shape=shape, nonlocal_mean=Nonlocal(length=0.9 * least)).rock.nonlocal_mean.acts
 
 
 @pytest.mark.parametrize(
@@ -239,9 +241,9 @@ def test_mean_over_less_than_the_grid_can_is_refused_with_a_dx_that_would_do(sha
             ("after_failure.residual_friction_angle", lambda v=v: Directional(residual_friction_angle=v))
             for v in (-1.0, 90.0, NAN)
         ],
-        *[("averaging.length", lambda v=v: Nonlocal(length=v)) for v in (0.0, -1e-3, NAN, INF)],
-        *[("averaging.shade", lambda v=v: Nonlocal(length=1e-3, shade=v)) for v in (-0.1, 101.0, NAN)],
-        *[("averaging.wedge", lambda v=v: Nonlocal(length=1e-3, wedge=v)) for v in (0.0, 90.0, -5.0, NAN)],
+        *[("nonlocal_mean.length", lambda v=v: Nonlocal(length=v)) for v in (0.0, -1e-3, NAN, INF)],
+        *[("nonlocal_mean.exclusion", lambda v=v: Nonlocal(length=1e-3, exclusion=v)) for v in (-0.1, 101.0, NAN)],
+        *[("nonlocal_mean.wedge", lambda v=v: Nonlocal(length=1e-3, wedge=v)) for v in (0.0, 90.0, -5.0, NAN)],
     ],
 )
 def test_impossible_crack_is_refused_by_field(field, build):
@@ -271,19 +273,23 @@ def test_taps_have_the_variance_that_is_left_to_them(shape, ratio):
     """length^2 = variance of the taps + that of spreading to nodes and of reading back, for any length and cell."""
     dx = 0.5e-3
     length = dx * math.sqrt(2.0 * shape.variance + ratio**2)
-    taps = np.array(Nonlocal(length=length).taps(dx, shape.variance))
-    place = np.arange(len(taps)) - len(taps) // 2
-    assert len(taps) % 2 == 1 and (taps > -1e-12).all() and (taps == taps[::-1]).all()
-    assert taps.sum() == pytest.approx(1.0, abs=1e-12)
+    filter_weights = np.array(Nonlocal(length=length).filter_weights(dx, shape.variance))
+    position = np.arange(len(filter_weights)) - len(filter_weights) // 2
+    assert (
+        len(filter_weights) % 2 == 1
+        and (filter_weights > -1e-12).all()
+        and (filter_weights == filter_weights[::-1]).all()
+    )
+    assert filter_weights.sum() == pytest.approx(1.0, abs=1e-12)
     # a Gaussian that is cut at 3.5 deviations has lost 0.6 % of its variance
-    assert dx**2 * ((place**2 * taps).sum() + 2.0 * shape.variance) == pytest.approx(length**2, rel=0.01)
+    assert dx**2 * ((position**2 * filter_weights).sum() + 2.0 * shape.variance) == pytest.approx(length**2, rel=0.01)
 
 
 def test_least_length_leaves_nothing_to_the_taps():
     for shape in SHAPES:
         least = Nonlocal(length=1.0).least_length(1e-3, shape.variance)
-        taps = Nonlocal(length=least).taps(1e-3, shape.variance)
-        assert taps == pytest.approx((0.0, 1.0, 0.0), abs=1e-12)
+        filter_weights = Nonlocal(length=least).filter_weights(1e-3, shape.variance)
+        assert filter_weights == pytest.approx((0.0, 1.0, 0.0), abs=1e-12)
 
 
 @pytest.mark.parametrize(
@@ -291,5 +297,5 @@ def test_least_length_leaves_nothing_to_the_taps():
 )
 def test_rock_with_directional_cracks_and_mean_stress_survives_json(soft):
     law = Directional(residual_friction_angle=25.0, rotating=True, softening=soft)
-    one = scene(after_failure=law, averaging=Nonlocal(length=1.5e-3, shade=3.0, wedge=20.0))
+    one = scene(after_failure=law, nonlocal_mean=Nonlocal(length=1.5e-3, exclusion=3.0, wedge=20.0))
     assert from_plain(json.loads(json.dumps(to_plain(one), allow_nan=False))) == one

@@ -61,7 +61,7 @@ def simulation(**changes) -> Simulation:
 
 
 def stressed(stress, **changes) -> Simulation:
-    """A block that has not failed; `stress`: places [n, 2] -> (xx, yy, zz, xy) [MPa], each [n] or one number."""
+    """A block that has not failed; `stress`: positions [n, 2] -> (xx, yy, zz, xy) [MPa], each [n] or one number."""
     sim = simulation(**changes)
     x = sim.particles.reference.to_numpy()
     packed = np.stack([np.broadcast_to(np.asarray(s, dtype=float), len(x)) for s in stress(x)], axis=1)
@@ -70,7 +70,7 @@ def stressed(stress, **changes) -> Simulation:
         component.fill(0)
     if sim.particles.breaks:
         sim.particles.mode.fill(0)
-    if sim.averaging:
+    if sim.is_nonlocal:
         sim.particles.excluding_normal.fill(0.0)
     return sim
 
@@ -119,16 +119,16 @@ def step(x):
 
 
 def averaged(**changes):
-    return stressed(step, after_failure=Directional(softening=SOFT), averaging=Nonlocal(length=LENGTH), **changes)
+    return stressed(step, after_failure=Directional(softening=SOFT), nonlocal_mean=Nonlocal(length=LENGTH), **changes)
 
 
 def test_mean_stress_decides_on_tension_where_it_is_asked_to():
     """A step seen through a Gaussian is a normal distribution function."""
     state = look(averaged())
     inside = (np.abs(state.x - 12.0 * MM) < 3.0 * MM).all(axis=1)  # free edges, which weigh nothing, are 3 lengths off
-    share = [0.5 * math.erfc(-(x - 12.0 * MM) / (LENGTH * math.sqrt(2.0))) for x in state.x[inside, 0]]
+    fraction = [0.5 * math.erfc(-(x - 12.0 * MM) / (LENGTH * math.sqrt(2.0))) for x in state.x[inside, 0]]
     # the Gaussian is cut off at three standard deviations and sampled every 1/3 of one
-    np.testing.assert_allclose(state.margin[inside], 1.0 - 0.75 * np.array(share), atol=0.004)
+    np.testing.assert_allclose(state.margin[inside], 1.0 - 0.75 * np.array(fraction), atol=0.004)
     assert (state.governs[inside] == TENSION).all()
 
 
@@ -152,7 +152,7 @@ def test_own_tension_beyond_the_cut_off_is_no_shear_with_averaging():
     top = int(np.argmin(np.hypot(*(state.x - 12.0 * MM).T)))
     peak = stressed(
         lambda x: (np.where((x == state.x[top]).all(axis=1), 6.0, 0.0), 0.0, 0.0, 0.0),
-        after_failure=Directional(softening=SOFT), averaging=Nonlocal(length=LENGTH),
+        after_failure=Directional(softening=SOFT), nonlocal_mean=Nonlocal(length=LENGTH),
     )  # fmt: skip
     state = look(peak)
     assert state.margin.min() == pytest.approx(1.0 - 2.0 * N_PHI / UCS, rel=1e-12)
@@ -162,7 +162,7 @@ def test_own_tension_beyond_the_cut_off_is_no_shear_with_averaging():
 def test_shear_is_for_a_particles_own_stress_with_averaging_too():
     sim = stressed(
         lambda x: (0.0, np.where(x[:, 0] > 12.0 * MM, -0.5 * UCS, 0.0), 0.0, 0.0),
-        after_failure=Directional(softening=SOFT), averaging=Nonlocal(length=LENGTH),
+        after_failure=Directional(softening=SOFT), nonlocal_mean=Nonlocal(length=LENGTH),
     )  # fmt: skip
     state = look(sim)
     right = state.x[:, 0] > 12.0 * MM

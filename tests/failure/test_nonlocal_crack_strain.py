@@ -5,11 +5,11 @@ import math
 import numpy as np
 import pytest
 import taichi as ti
-from nonlocal_block import DX, block, places
+from nonlocal_block import DX, block, positions
 from scipy.integrate import quad
 from scipy.stats import norm
 
-from rsmpm_ti.failure.nonlocal_fields import read_crack_strains, smooth_stress
+from rsmpm_ti.failure.nonlocal_fields import read_crack_strains, sum_nonlocal
 from rsmpm_ti.rock.crack_return import MIN_CRACK_STRAIN
 from rsmpm_ti.rock.nonlocal_mean import Nonlocal
 from rsmpm_ti.spec.seeding import Lattice
@@ -30,7 +30,7 @@ def test_what_averaging_leaves_of_a_band(length):
     def averaged(d):
         return quad(lambda y: norm.pdf(d - y, scale=length), -0.5, 0.5)[0]
 
-    assert rule.band_share(1.0) == pytest.approx(averaged(0.0), rel=1e-10)
+    assert rule.band_fraction(1.0) == pytest.approx(averaged(0.0), rel=1e-10)
     variance = quad(lambda d: d * d * averaged(d), -12.0 * length, 12.0 * length, limit=200)[0]
     assert rule.band_variance(1.0) == pytest.approx(variance, rel=1e-6)
 
@@ -38,7 +38,7 @@ def test_what_averaging_leaves_of_a_band(length):
 def opened(sim, angle: float, half: float) -> tuple[np.ndarray, np.ndarray]:
     """(mean crack strain, distance from the crack [m]) of cracked particles: within `half` [m] of a line through the
     middle with its normal at `angle` [degrees], which share the opening W, and of those up to 1.5 bands away, shut."""
-    x = places(sim) - 0.5 * CELLS * DX
+    x = positions(sim) - 0.5 * CELLS * DX
     n = np.array([math.cos(math.radians(angle)), math.sin(math.radians(angle))])
     away = np.abs(x @ n)
     inside, cracked = away < half, away < 1.5 * BAND
@@ -48,7 +48,7 @@ def opened(sim, angle: float, half: float) -> tuple[np.ndarray, np.ndarray]:
     particles.mode.from_numpy(cracked.astype(np.int32))
     particles.history.crack_normal.fill(ti.Vector(n))
     particles.crack_strain_nonlocal.fill(0.0)
-    smooth_stress(sim)
+    sum_nonlocal(sim)
     read_crack_strains(sim)
     found = particles.crack_strain_nonlocal.to_numpy()
     assert (found[~cracked] == 0.0).all()
@@ -91,7 +91,7 @@ def test_rows_of_a_crack_lose_strength_by_the_opening_that_they_share(ratio, ang
 def test_crack_that_ends_at_a_free_face_opens_there_as_inside():
     """The mean is over rock: half of what the Gaussian covers there is missing from both its sums."""
     sim = block(CELLS, length=2.0 * DX)
-    x = places(sim)
+    x = positions(sim)
     opened(sim, 0.0, 0.5 * BAND)
     strain = sim.particles.crack_strain_nonlocal.to_numpy()
     near = np.abs(x[:, 0] - 0.5 * CELLS * DX) < 0.5 * BAND
@@ -100,16 +100,16 @@ def test_crack_that_ends_at_a_free_face_opens_there_as_inside():
 
 
 def test_lonely_cracked_particle_keeps_nearly_all_of_its_strength():
-    """A particle that opens alone is no crack: over a length of one cell it counts as a small share of its strain."""
+    """A particle that opens alone is no crack: over one cell it counts as a small fraction of its strain."""
     sim = block(CELLS, length=DX)
-    middle = int(np.linalg.norm(places(sim) - 0.5 * CELLS * DX, axis=1).argmin())
+    middle = int(np.linalg.norm(positions(sim) - 0.5 * CELLS * DX, axis=1).argmin())
     particles = sim.particles
     mode, widest = np.zeros(particles.count, dtype=np.int32), np.zeros((particles.count, 2))
     mode[middle], widest[middle, 0] = 1, W / BAND
     particles.mode.from_numpy(mode)
     particles.history.crack_strain_max.from_numpy(widest)
-    smooth_stress(sim)
+    sum_nonlocal(sim)
     read_crack_strains(sim)
     # V/(2 pi l^2) of its strain in a mean, over what is left of a band in its middle
-    share = 0.25 / (2.0 * math.pi) / Nonlocal(length=DX).band_share(BAND)
-    assert particles.crack_strain_nonlocal.to_numpy()[middle] * BAND / W == pytest.approx(share, rel=0.1)
+    fraction = 0.25 / (2.0 * math.pi) / Nonlocal(length=DX).band_fraction(BAND)
+    assert particles.crack_strain_nonlocal.to_numpy()[middle] * BAND / W == pytest.approx(fraction, rel=0.1)

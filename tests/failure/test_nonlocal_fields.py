@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 import taichi as ti
 from harness import name_of
-from nonlocal_block import DX, block, places
+from nonlocal_block import DX, block, positions
 
-from rsmpm_ti.failure.nonlocal_fields import mark_overloaded, mean_stress, near_overloaded, smooth_stress
+from rsmpm_ti.failure.nonlocal_fields import mark_overloaded, mean_stress, near_overloaded, sum_nonlocal
 from rsmpm_ti.fields.state import Simulation
 from rsmpm_ti.method.shape import Gimp, Linear, QuadraticBSpline
 from rsmpm_ti.spec.boundaries import Wall
@@ -30,7 +30,7 @@ def read(sim: ti.template(), mean: ti.types.ndarray(), near: ti.types.ndarray())
 def averaged(sim: Simulation, sigma: np.ndarray, limit: float = 0.0) -> tuple[np.ndarray, np.ndarray]:
     """(mean stress [n, 4], whether the particle is near a node where it reaches `limit` [n]) of stress [n, 4]."""
     sim.particles.sigma.from_numpy(np.ascontiguousarray(sigma))
-    smooth_stress(sim)
+    sum_nonlocal(sim)
     mark_overloaded(sim, limit)
     mean, near = np.zeros((len(sigma), 4)), np.zeros(len(sigma), dtype=np.int32)
     read(sim, mean, near)
@@ -69,7 +69,7 @@ def inside(x: np.ndarray, length: float) -> np.ndarray:
 def test_linear_field_is_its_own_mean_inside(shape, ratio):
     """The kernel is symmetric, and on a lattice every node has as much rock on one side as on the other."""
     sim = block(CELLS, shape, ratio * DX)
-    x = places(sim)
+    x = positions(sim)
     sigma = np.stack([1.0 + 2e3 * x[:, 0], 3e3 * x[:, 1], 1e3 * (x[:, 0] - x[:, 1]), np.ones(len(x))], axis=1)
     mean, _ = averaged(sim, sigma)
     deep = inside(x, ratio * DX)
@@ -90,12 +90,12 @@ def test_length_is_the_standard_deviation_of_the_gaussian_whatever_the_cell_and_
     """A wave sin(k x) leaves a Gaussian mean as exp(-k^2 l^2/2) of itself, along the grid and across."""
     length = ratio * DX
     sim = block(CELLS, shape, length)
-    x = places(sim) - 0.5 * CELLS * DX
+    x = positions(sim) - 0.5 * CELLS * DX
     degrees = (0.0, 22.5, 45.0)
     turns = [np.array([math.cos(math.radians(a)), math.sin(math.radians(a))]) for a in degrees]
     k = [0.8 * turn / length for turn in turns] + [1.3 * turns[0] / length]
     mean, _ = averaged(sim, np.stack([np.sin(x @ wave) for wave in k], axis=1))
-    deep = inside(places(sim), length)
+    deep = inside(positions(sim), length)
     found = np.array([attenuation(x[deep], mean[deep, c], wave) for c, wave in enumerate(k)])
     # a hat has a variance of 1/6 in the mean over all places, but f (1 - f) at f from a node: 3/16 at 1/4 and 3/4 of a
     # cell, where a lattice has its particles, on the way to nodes and back; the other functions have theirs everywhere
@@ -111,11 +111,13 @@ def test_length_is_the_standard_deviation_of_the_gaussian_whatever_the_cell_and_
 
 def mean_by_matrices(sim: Simulation, sigma: np.ndarray) -> np.ndarray:
     """The same mean from dense NumPy matrices and the shape function's profile: spread, blur by axis, read."""
-    xi = (places(sim) - np.array(sim.grid.origin)) / DX
+    xi = (positions(sim) - np.array(sim.grid.origin)) / DX
     by_axis = [sim.shape.profile(xi[:, d, None] - np.arange(n)) for d, n in enumerate(sim.grid.nodes)]
     w = (by_axis[0][:, :, None] * by_axis[1][:, None, :]).reshape(len(xi), -1)
-    taps = np.array(sim.rock.averaging.taps(DX, sim.shape.variance))
-    rows = [sum(t * np.eye(n, k=j - len(taps) // 2) for j, t in enumerate(taps)) for n in sim.grid.nodes]
+    filter_weights = np.array(sim.rock.nonlocal_mean.filter_weights(DX, sim.shape.variance))
+    rows = [
+        sum(t * np.eye(n, k=j - len(filter_weights) // 2) for j, t in enumerate(filter_weights)) for n in sim.grid.nodes
+    ]
     volume = sim.particles.volume.to_numpy()[:, None]
     read_back = w @ np.kron(*rows) @ w.T
     return (read_back @ (volume * sigma)) / (read_back @ volume)
@@ -135,19 +137,19 @@ def test_mean_is_that_of_dense_matrices(jittered):
     np.testing.assert_allclose(mean, mean_by_matrices(sim, sigma), rtol=0.0, atol=1e-12)
 
 
-@pytest.mark.parametrize("share", [0.5, 0.9, 0.99, 0.998])
-def test_no_overloaded_particle_is_spared_the_reading(jittered, share):
-    """sigma_1 by eigenvalues of the brute-force mean; a share of all particles lies below the limit."""
+@pytest.mark.parametrize("fraction", [0.5, 0.9, 0.99, 0.998])
+def test_no_overloaded_particle_is_spared_the_reading(jittered, fraction):
+    """sigma_1 by eigenvalues of the brute-force mean; a fraction of all particles lies below the limit."""
     sim, _ = jittered
     for seed in range(6):
         sigma = np.random.default_rng(seed).normal(size=(sim.particles.count, 4))
         m = mean_by_matrices(sim, sigma)
         first = np.maximum(np.linalg.eigvalsh(m[:, [0, 3, 3, 1]].reshape(-1, 2, 2))[:, 1], m[:, 2])
-        limit = float(np.quantile(first, share))
+        limit = float(np.quantile(first, fraction))
         _, near = averaged(sim, sigma, limit)
         assert near[first >= limit * (1.0 + 1e-12)].all()
         # and the marks are worth it: most particles are spared where few are overloaded
-        assert share < 0.99 or near.mean() < 0.25
-        assert sim.means.any_overloaded[None] == 1
+        assert fraction < 0.99 or near.mean() < 0.25
+        assert sim.nonlocal_sums.any_overloaded[None] == 1
     averaged(sim, sigma, 1e3)
-    assert sim.means.any_overloaded[None] == 0
+    assert sim.nonlocal_sums.any_overloaded[None] == 0

@@ -51,7 +51,7 @@ ADDED = {
         {"mode", *HISTORY},
     ),
     "mean stress": (
-        rock(criterion=STRENGTH, after_failure=SOFT, averaging=Nonlocal(length=3e-3)),
+        rock(criterion=STRENGTH, after_failure=SOFT, nonlocal_mean=Nonlocal(length=3e-3)),
         {"mode", *HISTORY, "overload", "excluding_normal", "crack_strain_nonlocal", "crack_strain_max_nonlocal"},
     ),
 }  # fmt: skip

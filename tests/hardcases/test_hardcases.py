@@ -74,7 +74,7 @@ def test_neighbours_are_parted_beyond_what_a_shape_function_surely_bridges(shape
     where = np.linspace(0.0, 1.0, 101)
     for distance, always in ((bridged, True), (bridged + 0.05, False)):
         nodes = np.arange(-3, 6)
-        reached = [(shape.profile(place - nodes) > 0.0) for place in (where[:, None], where[:, None] + distance)]
+        reached = [(shape.profile(position - nodes) > 0.0) for position in (where[:, None], where[:, None] + distance)]
         # at the distance itself a support may end on the very node: what is asked for is just below it
         closer = shape.profile(where[:, None] + distance - 1e-9 - nodes) > 0.0
         shared = (reached[0] & (closer if always else reached[1])).any(axis=1)

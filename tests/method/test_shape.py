@@ -16,7 +16,7 @@ FREE = (-(10**6), 10**6)
 WALLS = (5, 11)
 every_shape = pytest.mark.parametrize("shape", [*variants(Scene, "shape"), Gimp(half_width=0.5)], ids=repr)
 both_dims = pytest.mark.parametrize("dim", [2, 3])
-places = pytest.mark.parametrize("place", ["free", "walls"])
+positions = pytest.mark.parametrize("position", ["free", "walls"])
 
 
 @pytest.fixture(scope="module")
@@ -66,11 +66,11 @@ def products(values, stencil):
     return w, np.stack(g, axis=-1)
 
 
-def points(place: str, dim: int, real, n: int = 300) -> np.ndarray:
+def points(position: str, dim: int, real, n: int = 300) -> np.ndarray:
     """Grid coordinates between the walls; most of those for `walls` lie within half a cell of one, two on them."""
     random = np.random.default_rng(21)
     xi = random.uniform(*WALLS, size=(n, dim))
-    if place == "walls":
+    if position == "walls":
         near = random.uniform(0.0, 0.5, size=(n, dim))
         beside = np.where(random.uniform(size=(n, dim)) < 0.5, WALLS[0] + near, WALLS[1] - near)
         xi = np.where(random.uniform(size=(n, dim)) < 0.7, beside, xi)
@@ -78,8 +78,8 @@ def points(place: str, dim: int, real, n: int = 300) -> np.ndarray:
     return rounded(xi, real)
 
 
-def walls_of(place: str) -> tuple[int, int]:
-    return {"free": FREE, "walls": WALLS}[place]
+def walls_of(position: str) -> tuple[int, int]:
+    return {"free": FREE, "walls": WALLS}[position]
 
 
 def folded(values: np.ndarray, nodes: np.ndarray, walls) -> np.ndarray:
@@ -116,12 +116,12 @@ def test_profile_is_the_closed_form(shape):
 
 @every_shape
 @both_dims
-@places
-def test_weights_and_gradients_are_the_closed_form(kernels, taichi_real, shape, dim, place):
-    xi = points(place, dim, taichi_real)
+@positions
+def test_weights_and_gradients_are_the_closed_form(kernels, taichi_real, shape, dim, position):
+    xi = points(position, dim, taichi_real)
     xi = xi[np.abs(xi * 8.0 - np.round(xi * 8.0)).min(axis=1) > 1e-3]  # at a kink the slope is a matter of taste
-    nodes, w, g = weights(kernels, shape, xi, walls_of(place), taichi_real)
-    expected_w, expected_g = closed_form(shape, xi, nodes, walls_of(place))
+    nodes, w, g = weights(kernels, shape, xi, walls_of(position), taichi_real)
+    expected_w, expected_g = closed_form(shape, xi, nodes, walls_of(position))
     # local coordinates carry round-off of coordinates up to 11; gimp divides it by its half width, 0.125 or more
     atol = 100 * epsilon(taichi_real)
     np.testing.assert_allclose(w, expected_w, rtol=0.0, atol=atol)
@@ -130,10 +130,10 @@ def test_weights_and_gradients_are_the_closed_form(kernels, taichi_real, shape, 
 
 @every_shape
 @both_dims
-@places
-def test_linear_fields_and_their_gradients_are_exact(kernels, taichi_real, shape, dim, place):
-    xi = points(place, dim, taichi_real)
-    nodes, w, g = weights(kernels, shape, xi, walls_of(place), taichi_real)
+@positions
+def test_linear_fields_and_their_gradients_are_exact(kernels, taichi_real, shape, dim, position):
+    xi = points(position, dim, taichi_real)
+    nodes, w, g = weights(kernels, shape, xi, walls_of(position), taichi_real)
     # sums of 27 terms, each a weight times a distance of at most 2 cells, gradients up to 4 times as large
     atol = 200 * epsilon(taichi_real)
     away = nodes - xi[:, None, :]
@@ -146,19 +146,19 @@ def test_linear_fields_and_their_gradients_are_exact(kernels, taichi_real, shape
 
 @every_shape
 @both_dims
-@places
-def test_gradient_is_the_central_difference_of_the_weight(kernels, taichi_real, shape, dim, place):
+@positions
+def test_gradient_is_the_central_difference_of_the_weight(kernels, taichi_real, shape, dim, position):
     h = 1e-2
-    xi = points(place, dim, taichi_real)
+    xi = points(position, dim, taichi_real)
     eighths = xi * 8.0
     xi = xi[np.abs(eighths - np.round(eighths)).min(axis=1) > 16 * h]  # pieces join at eighths of a cell
     assert len(xi) > 50
-    nodes, _, g = weights(kernels, shape, xi, walls_of(place), taichi_real)
+    nodes, _, g = weights(kernels, shape, xi, walls_of(position), taichi_real)
     for axis in range(dim):
         step = np.eye(dim)[axis] * h
         ahead, behind = rounded(xi + step, taichi_real), rounded(xi - step, taichi_real)
-        same_a, w_a, _ = weights(kernels, shape, ahead, walls_of(place), taichi_real)
-        same_b, w_b, _ = weights(kernels, shape, behind, walls_of(place), taichi_real)
+        same_a, w_a, _ = weights(kernels, shape, ahead, walls_of(position), taichi_real)
+        same_b, w_b, _ = weights(kernels, shape, behind, walls_of(position), taichi_real)
         assert (same_a == nodes).all() and (same_b == nodes).all()
         difference = (w_a - w_b) / (ahead - behind)[:, axis, None]
         # exact for pieces of second degree; round-off of weights at coordinates up to 11, divided by h
@@ -174,12 +174,12 @@ def scattered(nodes, w) -> np.ndarray:
 
 
 @every_shape
-@places
-def test_weights_are_continuous_across_cell_boundaries(kernels, taichi_real, shape, place):
+@positions
+def test_weights_are_continuous_across_cell_boundaries(kernels, taichi_real, shape, position):
     step = 64 * epsilon(taichi_real)
     line = np.arange(2 * WALLS[0] + 1, 2 * WALLS[1]) / 2.0  # nodes and cell centres, where base nodes change
     at = np.stack(np.meshgrid(line, line), axis=-1).reshape(-1, 2)
-    before, after = (weights(kernels, shape, at + s, walls_of(place), taichi_real)[:2] for s in (-step, step))
+    before, after = (weights(kernels, shape, at + s, walls_of(position), taichi_real)[:2] for s in (-step, step))
     # slopes are at most 2 beside walls (a folded weight), the step is 2 x 64 round-offs along each axis
     assert np.abs(scattered(*before) - scattered(*after)).max() < 12 * step
 

@@ -12,7 +12,7 @@ SMALL = {
         "time_scale": 16.0,
         "settings": {"shape": "Linear", "schedule.rows": "30"},
     },
-    # mean stress over a length: cracks of one step shade particles in turn
+    # mean stress over a length: cracks of one step exclude particles in turn
     "cube_lab": {"quick": True, "settings": {"schedule.rows": "30"}},
 }
 

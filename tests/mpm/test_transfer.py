@@ -205,7 +205,7 @@ def test_momentum_of_a_free_body_changes_by_its_weight_alone_to_round_off(simula
     assert np.abs(v - state.v).max() > 1e-2  # and something did happen
 
 
-# share of a cell by which particles lie outside the wall, as beside a platen that pulls
+# fraction of a cell by which particles lie outside the wall, as beside a platen that pulls
 @pytest.mark.parametrize("beyond", [0.0, 0.05])
 @pytest.mark.parametrize("shape", variants(Scene, "shape"), ids=name_of)
 def test_apic_keeps_an_affine_velocity_field_exactly(simulations, shape, beyond):

@@ -29,8 +29,8 @@ SOFT = Directional(softening=LinearSoftening(G_f_I=20.0, G_f_II=200.0))
 def stripes(count: int) -> tuple[np.ndarray, np.ndarray]:
     """Particles of 1 mm on 40 x 20 mm and the number of the upright stripe, of `count`, in which each lies."""
     x, y = np.meshgrid((np.arange(40) + 0.5) * MM, (np.arange(20) + 0.5) * MM, indexing="ij")
-    places = np.column_stack([x.ravel(), y.ravel()])
-    return places, (places[:, 0] / (40.0 * MM) * count).astype(int)
+    positions = np.column_stack([x.ravel(), y.ravel()])
+    return positions, (positions[:, 0] / (40.0 * MM) * count).astype(int)
 
 
 def painter(kind: str, **changes) -> FramePainter:
@@ -49,8 +49,8 @@ def test_margin_frame_shows_how_near_and_to_which_failure():
     margin, governs = np.array([0.0, 0.5, 1.0, 0.5, 0.0])[stripe], np.array([1, 1, 0, 2, 2])[stripe]
     found = colours(painter("margin").panel(snapshot_of(x, margin=margin, governs=governs)), 5)
     ramp = margin_palette().ramp
-    for k, place in enumerate((256, 192, 128, 64, 0)):  # loads 1 and 1/2 in tension, none, 1/2 and 1 in shear
-        assert np.abs(found[k] - ramp[place]).max() <= 1.0, k
+    for k, position in enumerate((256, 192, 128, 64, 0)):  # loads 1 and 1/2 in tension, none, 1/2 and 1 in shear
+        assert np.abs(found[k] - ramp[position]).max() <= 1.0, k
     light = [colour.mean() for colour in found]
     assert light[0] < light[1] < light[2] > light[3] > light[4], "the nearer, the darker"
     assert (found[0][0] > found[0][1]) and (found[4][1] > found[4][0]), "tension purple, shear green"
@@ -72,9 +72,9 @@ def test_pixel_that_sees_both_failures_near_does_not_look_unloaded():
     view = View(lower=(0.0, 0.0), upper=(0.04, 0.02), width=80, height=40)
     x = np.array([[0.02, 0.01], [0.02, 0.01]])
     palette = margin_palette()
-    for values, place in (((0.9, -0.5), 0.7), ((0.5, -0.9), -0.7)):
+    for values, position in (((0.9, -0.5), 0.7), ((0.5, -0.9), -0.7)):
         image = Raster(view, palette).image(x, 4e-3, np.zeros(2), np.array(values))
-        expected = palette.ramp[round(128 + 128 * place)]
+        expected = palette.ramp[round(128 + 128 * position)]
         assert np.abs(image[20, 40] - expected).max() <= 3.0  # a step of the ramp, and values in 1/1024
 
 

@@ -28,8 +28,8 @@ def test_movie_decodes_with_all_frames_even_size_and_true_colours(tmp_path, shap
     assert len(frames) == 7 and meta["size"] == size and meta["fps"] == 10
     assert meta["codec"] == "h264" and meta["pix_fmt"].startswith("yuv420p") and "bt709" in meta["pix_fmt"]
     row, column = size[1] // 2, size[0] // 4
-    for place, colour in ((column, (213, 94, 0)), (3 * column, (0, 114, 178))):
-        assert np.abs(frames[3][row, place].astype(int) - colour).max() <= 4, "cracks left, stress right"
+    for position, colour in ((column, (213, 94, 0)), (3 * column, (0, 114, 178))):
+        assert np.abs(frames[3][row, position].astype(int) - colour).max() <= 4, "cracks left, stress right"
 
 
 def test_movie_without_frames_writes_nothing_and_without_encoder_says_so(tmp_path, monkeypatch):

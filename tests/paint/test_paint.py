@@ -285,7 +285,7 @@ def test_summary_draws_crack_paths_with_lengths_and_the_acoustic_count(tmp_path)
     assert dark.sum() > 300  # the line, about 400 pixels long, and the digits
     assert np.ptp(rows) > 300 and np.ptp(columns) > 40  # 60 of 110 mm high; the label is written beside the line
     changed = (all_three != one).any(axis=2)
-    assert all(0 < np.ptp(places) < 30 for places in np.nonzero(changed[:, 1000:]))  # a line and no label
+    assert all(0 < np.ptp(positions) < 30 for positions in np.nonzero(changed[:, 1000:]))  # a line and no label
     assert changed[:, :850].sum() > 300  # the curve
 
 

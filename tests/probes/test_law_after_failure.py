@@ -93,7 +93,7 @@ def test_vtu_holds_it(run):
 
 def test_checkpoint_keeps_it_and_a_run_goes_on_to_the_same_bits(run, tmp_path):
     def stop(progress):
-        if progress.share > 0.8:
+        if progress.fraction > 0.8:
             os.kill(os.getpid(), signal.SIGTERM)
 
     first = simulate(scene(), out=tmp_path, threads=1, checkpoint_every=0.0, progress=stop)

@@ -44,7 +44,7 @@ def run(out: Path, stop_at: float = 2.0, resume: bool = False) -> Depths:
     observer = Depths()
 
     def stop(progress) -> None:
-        if progress.share > stop_at:
+        if progress.fraction > stop_at:
             os.kill(os.getpid(), signal.SIGINT)
 
     simulate(scene, out=out, threads=1, resume=resume, observers=(observer,), progress=stop)

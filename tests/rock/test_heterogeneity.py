@@ -26,7 +26,7 @@ MM = 1e-3
 VARIED = Weibull(shape=3.0, reference_volume=1e-6, seed=7)
 
 
-def places(n: int, spacing: float) -> np.ndarray:
+def positions(n: int, spacing: float) -> np.ndarray:
     """n x n particles on a lattice, [n^2, 2]."""
     axis = (np.arange(n) + 0.5) * spacing
     return np.stack(np.meshgrid(axis, axis, indexing="ij"), axis=-1).reshape(-1, 2)
@@ -48,7 +48,7 @@ def test_bad_value_is_refused_by_name(field, value):
 
 @pytest.mark.parametrize("volume", [0.25e-6, 1e-6, 9e-6])
 def test_factors_are_weibull_with_the_scale_of_their_volume(volume):
-    k = VARIED.factors(places(100, 1.0), np.full(10_000, volume))
+    k = VARIED.factors(positions(100, 1.0), np.full(10_000, volume))
     scale = (1e-6 / volume) ** (1.0 / 3.0)
     assert kstest(k, weibull_min(3.0, scale=scale).cdf).pvalue > 0.01  # one seed: 1 in 100 would fall below
     assert kstest(k, weibull_min(3.0, scale=1.05 * scale).cdf).pvalue < 1e-4  # a wrong scale would be seen
@@ -56,7 +56,7 @@ def test_factors_are_weibull_with_the_scale_of_their_volume(volume):
 
 def test_particles_of_different_volumes_have_each_its_own_scale():
     volume = np.tile([1e-6, 0.5e-6, 8e-6], 4000)
-    scaled = VARIED.factors(places(110, 1.0)[:12_000], volume) * (volume / 1e-6) ** (1.0 / 3.0)
+    scaled = VARIED.factors(positions(110, 1.0)[:12_000], volume) * (volume / 1e-6) ** (1.0 / 3.0)
     for k in range(3):
         assert kstest(scaled[k::3], weibull_min(3.0).cdf).pvalue > 0.01
 
@@ -65,7 +65,7 @@ def test_particles_of_different_volumes_have_each_its_own_scale():
 def test_the_weakest_of_an_area_does_not_see_the_particle_size(per_side):
     """Mean over seeds of the minimum over 8 x 8 mm: Gamma(1 + 1/m) (V_ref/A)^(1/m), whatever the particles."""
     seeds, area, volume = 1000, 64e-6, np.full(per_side**2, 64e-6 / per_side**2)
-    x = places(per_side, 8 * MM / per_side)
+    x = positions(per_side, 8 * MM / per_side)
     weakest = np.array([replace(VARIED, seed=seed).factors(x, volume).min() for seed in range(seeds)])
     mean = math.gamma(4.0 / 3.0) * (1e-6 / area) ** (1.0 / 3.0)
     scatter = math.sqrt(math.gamma(5.0 / 3.0) / math.gamma(4.0 / 3.0) ** 2 - 1.0)  # standard deviation over mean
@@ -87,7 +87,7 @@ def test_correlation_falls_as_a_gaussian_with_distance():
     n, length, seeds = 40, 4 * MM, 40
     fields = []
     for seed in range(seeds):
-        fields.append(gaussian(correlated(length, seed).factors(places(n, MM), np.full(n * n, MM**2))).reshape(n, n))
+        fields.append(gaussian(correlated(length, seed).factors(positions(n, MM), np.full(n * n, MM**2))).reshape(n, n))
     fields = np.array(fields)
     # independent pieces: 40 seeds of 40 x 40 mm over an area pi l^2/2 of correlation of products; error 1/sqrt of them
     error = 1.0 / math.sqrt(seeds * (n * MM) ** 2 / (0.5 * math.pi * length**2))
@@ -113,7 +113,7 @@ def test_correlated_factors_are_weibull_at_any_one_place():
 def test_two_meshes_see_the_same_correlated_field():
     """Particles of a third of the size: every third one lies where a coarse one did and is as strong to round-off."""
     law = correlated(4 * MM, seed=3)
-    coarse, fine = places(20, 1.5 * MM), places(60, 0.5 * MM)
+    coarse, fine = positions(20, 1.5 * MM), positions(60, 0.5 * MM)
     k, k_fine = law.factors(coarse, np.full(400, (1.5 * MM) ** 2)), law.factors(fine, np.full(3600, (0.5 * MM) ** 2))
     assert np.allclose(fine.reshape(60, 60, 2)[1::3, 1::3].reshape(-1, 2), coarse, rtol=0.0, atol=1e-15)
     assert k_fine.reshape(60, 60)[1::3, 1::3].ravel() == pytest.approx(k, rel=1e-9)
@@ -137,14 +137,14 @@ def test_factors_are_exact_far_into_both_tails(monkeypatch):
 
 @pytest.mark.parametrize("length", [0.0, 4 * MM])
 def test_seed_alone_decides(length):
-    law, x, volume = replace(VARIED, correlation_length=length), places(30, MM), np.full(900, MM**2)
+    law, x, volume = replace(VARIED, correlation_length=length), positions(30, MM), np.full(900, MM**2)
     assert np.array_equal(law.factors(x, volume), replace(law).factors(x, volume))
     other = replace(law, seed=8).factors(x, volume)
     assert abs(np.corrcoef(law.factors(x, volume), other)[0, 1]) < 0.3  # 3 of 1/sqrt of some hundred independent pieces
 
 
 def test_uniform_is_one_everywhere():
-    assert np.array_equal(Uniform().factors(places(3, MM), np.full(9, 1.0)), np.ones(9))
+    assert np.array_equal(Uniform().factors(positions(3, MM), np.full(9, 1.0)), np.ones(9))
 
 
 def pulled(heterogeneity, bodies=2, **changes) -> Scene:
@@ -225,24 +225,24 @@ def test_particle_fails_at_its_own_strength_and_no_other(taichi_f64):
     k, ucs = strengths_by_seed(scene), scene.rock.criterion.ucs
     sim = Simulation(scene, scene.particles())
     sort_particles(sim)
-    share = np.where(np.arange(128) % 2 == 0, 0.99, 1.01)
-    axial = k * share * np.where(np.arange(128) < 64, 2e6, -ucs)
+    fraction = np.where(np.arange(128) % 2 == 0, 0.99, 1.01)
+    axial = k * fraction * np.where(np.arange(128) < 64, 2e6, -ucs)
     sigma = np.zeros((128, 4))
     sigma[:, 1] = axial
     sim.particles.sigma.from_numpy(sigma[sim.particles.id.to_numpy()])
     gather_all(sim, Pass(stress=True), 1e-12, 0.0)  # nodes are at rest: the stress stays and is checked
     order = np.argsort(sim.particles.id.to_numpy())
-    expected = np.where(share > 1.0, np.where(np.arange(128) < 64, 1, 2), 0)
+    expected = np.where(fraction > 1.0, np.where(np.arange(128) < 64, 1, 2), 0)
     assert np.array_equal(sim.particles.mode.to_numpy()[order], expected)
     events = sim.events
     own, recorded = events.id.to_numpy()[:64], events.sigma_1.to_numpy()[:64] + events.sigma_3.to_numpy()[:64]
-    assert recorded == pytest.approx(axial[own], rel=1e-12)  # an event keeps the stress itself, not its share of k
+    assert recorded == pytest.approx(axial[own], rel=1e-12)  # an event keeps the stress itself, not its fraction of k
 
 
 def test_specimen_first_fails_at_its_weakest_particle():
     """Stress is uniform until then: UCS of the rock times the smallest factor, at that particle's place."""
     # the paper's rule, by which a particle fails when its own stress reaches its strength
-    settings = {"rock.averaging": "Local", "rock.after_failure": "CompressionOnly", "domain.dx": "0.0025"}
+    settings = {"rock.nonlocal_mean": "Local", "rock.after_failure": "CompressionOnly", "domain.dx": "0.0025"}
     scene = load_scene("intact_weibull", dx=1.0 * MM, time_scale=40.0, strain_end=3.8e-4, settings=settings)
     # on a lattice: the scene's jitter makes stress noise of 2 %
     scene = replace(scene, shape=Linear(), bodies=(replace(scene.bodies[0], seeding=Lattice()),))

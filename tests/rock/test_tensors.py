@@ -150,10 +150,10 @@ def test_extreme_principals_of_repeated_roots_and_near_them(taichi_real, dim, si
     assert np.isfinite(found).all()
     assert (found[:, 0] >= found[:, 1] - 1e-30).all()
     # 3D: acos at +-1 knows its angle to sqrt(2 eps); centre +- hypot in the plane knows every root to round-off
-    share = 16 * epsilon(taichi_real) if dim == 2 else 2.0 * np.sqrt(epsilon(taichi_real))
+    fraction = 16 * epsilon(taichi_real) if dim == 2 else 2.0 * np.sqrt(epsilon(taichi_real))
     # (in 3D, deviators below 1e-10 Pa count as none)
     scale = np.abs(s).max(axis=1, keepdims=True)
-    assert (np.abs(found - expected) <= share * scale + 2e-10 * (dim == 3)).all()
+    assert (np.abs(found - expected) <= fraction * scale + 2e-10 * (dim == 3)).all()
 
 
 @both_dims

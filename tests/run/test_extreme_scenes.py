@@ -26,7 +26,7 @@ HOOKE, CRITERION, BODY = ["rock", "elasticity"], ["rock", "criterion"], ["bodies
 def moved(scale: float, shift: float):
     """The scene with all lengths scaled, then moved."""
 
-    def place(corner):
+    def position(corner):
         return tuple(scale * x + shift for x in corner)
 
     domain = LONE.domain
@@ -34,10 +34,10 @@ def moved(scale: float, shift: float):
         Platen(axis=1, side="lower", position=shift, speed=1e-3),
         Platen(axis=1, side="upper", position=scale * 0.1 + shift, speed=-1e-3),
     )
-    region = Box(lower=place((0.0, 0.0)), upper=place((0.05, 0.1)))
+    region = Box(lower=position((0.0, 0.0)), upper=position((0.05, 0.1)))
     return replace(
         LONE,
-        domain=Domain(lower=place(domain.lower), upper=place(domain.upper), dx=scale * domain.dx),
+        domain=Domain(lower=position(domain.lower), upper=position(domain.upper), dx=scale * domain.dx),
         bodies=(Body(region=region),),
         loading=replace(LONE.loading, boundaries=platens, width=scale * 0.05),
         schedule=Schedule(t_end=scale),

@@ -111,15 +111,15 @@ def checkpoint_time(folder: Path) -> float:
 
 def test_ctrl_c_and_sigterm_write_what_there_is_and_resume_goes_on(whole, tmp_path):
     scene, stops = build(parser().parse_args(RUN)), {0.3: signal.SIGINT, 0.6: signal.SIGTERM}
-    for share, number in stops.items():
+    for fraction, number in stops.items():
 
-        def stop(progress: Progress, share=share, number=number) -> None:
-            if progress.share > share:
+        def stop(progress: Progress, fraction=fraction, number=number) -> None:
+            if progress.fraction > fraction:
                 os.kill(os.getpid(), number)
 
         result = simulate(scene, out=tmp_path, name="cube", threads=1, resume=True, progress=stop)
         assert result.stopped.startswith("interrupted after step")
-        assert share < result.history["axial_strain"][-1] / 2.5e-4 < share + 0.05
+        assert fraction < result.history["axial_strain"][-1] / 2.5e-4 < fraction + 0.05
         assert json.loads((tmp_path / "summary.json").read_text())["stopped"] == result.stopped
         assert (tmp_path / "history.csv").exists() and (tmp_path / "cube.mp4").exists()
     assert main([*RUN, "--out", str(tmp_path), "--resume"]) == 0

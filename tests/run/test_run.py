@@ -146,7 +146,7 @@ def test_unstable_run_says_where_and_keeps_what_there_is(tmp_path):
     scene = load_scene("intact", dx=5e-3, strain_end=1e-3)
 
     def spoil(progress: Progress) -> None:
-        if progress.share > 0.1:
+        if progress.fraction > 0.1:
             spoil.run.sim.particles.v.fill(float("nan"))
 
     import rsmpm_ti.run.run as module

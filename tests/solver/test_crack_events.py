@@ -36,7 +36,7 @@ STEP = 1e-6
 """Strain of the slowest particle in a step: 0.9 % of what the rock bears."""
 
 
-def cell(after_failure, averaging=Local()) -> Simulation:  # noqa: B008
+def cell(after_failure, rule=Local()) -> Simulation:  # noqa: B008
     """Four particles in one cell; the band of a crack is one cell with linear functions."""
     scene = Scene(
         title="cell",
@@ -48,7 +48,7 @@ def cell(after_failure, averaging=Local()) -> Simulation:  # noqa: B008
             criterion=MohrCoulomb(cohesion=5.95e6, friction_angle=40.0, tensile_strength=TENSILE),
             viscosity=NoViscosity(),
             after_failure=after_failure,
-            averaging=averaging,
+            nonlocal_mean=rule,
         ),
         loading=Loading(),
         schedule=Schedule(t_end=1e-6),

@@ -152,6 +152,6 @@ def test_what_cannot_be_is_refused(wrong, message):
 def test_averages_and_a_domain_that_grows_are_refused():
     scene = flight("grow", grid="sparse")
     softening = LinearSoftening(G_f_I=5.0, G_f_II=50.0)
-    rock = replace(scene.rock, after_failure=Directional(softening=softening), averaging=Nonlocal(length=3e-3))
-    with pytest.raises(SceneError, match="domain.outside = 'grow' is refused: .* with rock.averaging"):
+    rock = replace(scene.rock, after_failure=Directional(softening=softening), nonlocal_mean=Nonlocal(length=3e-3))
+    with pytest.raises(SceneError, match="domain.outside = 'grow' is refused: .* with rock.nonlocal_mean"):
         replace(scene, rock=rock)

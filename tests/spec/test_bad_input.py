@@ -141,13 +141,13 @@ def check_setting(command, name: str, text: str) -> None:
         assert reading(text.strip(), value), f"{name} = {value!r}"
 
 
-@pytest.mark.parametrize("share", range(8))
-def test_setting_is_refused_by_name_or_is_what_the_scene_holds(command, share):
+@pytest.mark.parametrize("fraction", range(8))
+def test_setting_is_refused_by_name_or_is_what_the_scene_holds(command, fraction):
     """Every name gets a third of the texts, each text a third of the names."""
     pairs = [(n, t) for k, n in enumerate(NAMES) for j, t in enumerate(TEXTS) if (k + j) % 3 == 0]
     pairs += [(n, t) for n in NOT_NAMES for t in ("1", "")]
     wrong = []
-    for name, text in pairs[share::8]:
+    for name, text in pairs[fraction::8]:
         try:
             check_setting(command, name, text)
         except Exception as error:

@@ -27,7 +27,7 @@ def auto(name: str, **loading):
 
 
 def test_intact_rock_is_limited_by_the_kinetic_energy_of_uniform_strain():
-    # mean of v^2: (rate H)^2/12 along the load, and Poisson's share of the width across it
+    # mean of v^2: (rate H)^2/12 along the load, and Poisson's fraction of the width across it
     squared = RATE**2 * (0.1**2 + (0.14 / 0.86 * 0.05) ** 2) / 12.0
     k = math.sqrt(0.01 * UCS**2 / MODULUS / (2600.0 * squared))
     scene = auto("intact")

@@ -25,7 +25,7 @@ def flaw(angle: float = 45.0, width: float = WIDTH) -> Slit:
     return Slit(centre=CENTRE, length=LENGTH, width=width, angle=angle, rounded=True)
 
 
-def place(angle: float, along: float, across: float) -> np.ndarray:
+def position(angle: float, along: float, across: float) -> np.ndarray:
     """A point given along and across the flaw [m], [1, 2]."""
     c, s = math.cos(math.radians(angle)), math.sin(math.radians(angle))
     return np.array([[CENTRE[0] + along * c - across * s, CENTRE[1] + along * s + across * c]])
@@ -39,14 +39,14 @@ def test_round_ends_are_half_circles_within_the_length(angle, side):
     middle = 0.5 * LENGTH - r  # of the half circle
     for degrees in (0.0, 30.0, 60.0, 90.0, -45.0):
         along, across = math.cos(math.radians(degrees)), math.sin(math.radians(degrees))
-        assert slit.contains(place(angle, side * (middle + almost * r * along), almost * r * across)).all()
-        assert not slit.contains(place(angle, side * (middle + r * along / almost), r * across / almost)).any()
-    tip = place(angle, side * 0.5 * LENGTH * almost, 0.0)
-    assert slit.contains(tip).all() and not slit.contains(place(angle, side * 0.5 * LENGTH / almost, 0.0)).any()
-    corner = place(angle, side * 0.99 * 0.5 * LENGTH, 0.99 * r)
+        assert slit.contains(position(angle, side * (middle + almost * r * along), almost * r * across)).all()
+        assert not slit.contains(position(angle, side * (middle + r * along / almost), r * across / almost)).any()
+    tip = position(angle, side * 0.5 * LENGTH * almost, 0.0)
+    assert slit.contains(tip).all() and not slit.contains(position(angle, side * 0.5 * LENGTH / almost, 0.0)).any()
+    corner = position(angle, side * 0.99 * 0.5 * LENGTH, 0.99 * r)
     assert square.contains(corner).all() and not slit.contains(corner).any()
-    face = place(angle, side * 0.5 * middle, almost * r)
-    assert slit.contains(face).all() and not slit.contains(place(angle, side * 0.5 * middle, r / almost)).any()
+    face = position(angle, side * 0.5 * middle, almost * r)
+    assert slit.contains(face).all() and not slit.contains(position(angle, side * 0.5 * middle, r / almost)).any()
 
 
 @angles

@@ -75,7 +75,7 @@ def test_unknown_missing_and_wrong_fields_are_refused_by_place():
 
 
 @pytest.mark.parametrize(
-    "place, value, words",
+    "position, value, words",
     [
         ("order", 3, "'musl', 'usf' or 'usl'"),
         ("title", None, "a text"),
@@ -95,14 +95,14 @@ def test_unknown_missing_and_wrong_fields_are_refused_by_place():
         ("bodies", {"type": "Affine"}, "a list of Body"),
     ],
 )
-def test_recorded_value_of_a_wrong_kind_is_refused_by_place(place, value, words):
+def test_recorded_value_of_a_wrong_kind_is_refused_by_place(position, value, words):
     plain = owner = to_plain(make())
-    *path, name = place.split(".")
+    *path, name = position.split(".")
     for step in path:
         owner = owner[int(step)] if step.isdigit() else owner[step]
     owner[name] = value
     message = refusal(lambda: from_plain(plain))
-    assert message.startswith(f"scene.{place} = ".replace(".0.", "[0].")) and " is refused: it must be " in message
+    assert message.startswith(f"scene.{position} = ".replace(".0.", "[0].")) and " is refused: it must be " in message
     assert words in message
 
 
@@ -113,10 +113,12 @@ def test_whole_numbers_will_do_for_numbers():
 
 
 def test_scene_recorded_before_the_move_still_loads():
-    """Written by the code of 2026-11-23; fields that are new since then have their defaults."""
+    """Written by the code of 2026-11-23; fields that are new since then have their defaults, others new names."""
     path = Path(__file__).parent / "recorded_disc_lab.json"
     recorded = json.loads(path.read_text())["scene"]
     recorded["loading"]["cell"] = to_plain(LoadCell())
+    recorded["rock"]["nonlocal_mean"] = recorded["rock"].pop("averaging")
+    recorded["rock"]["nonlocal_mean"]["exclusion"] = recorded["rock"]["nonlocal_mean"].pop("shade")
     assert to_plain(read_scene(path)) == recorded
 
 

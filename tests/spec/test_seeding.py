@@ -70,10 +70,10 @@ def test_jitter_is_fixed_by_its_seed_and_its_count_by_none():
 def test_jitter_moves_every_particle_by_at_most_its_amount_and_fills_it(amount):
     region = cut(slit(1.0e-3))
     lattice, moved = Lattice().fill(region, ORIGIN, DX).x, Jittered(amount=amount).fill(region, ORIGIN, DX).x
-    share = np.abs(moved - lattice) / (0.5 * DX)
-    assert share.max() <= amount + 1e-9
-    assert share.max() >= 0.99 * amount
-    assert share.mean() == pytest.approx(0.5 * amount, rel=0.02)  # uniform; 1.6e5 draws, and edges that stay
+    fraction = np.abs(moved - lattice) / (0.5 * DX)
+    assert fraction.max() <= amount + 1e-9
+    assert fraction.max() >= 0.99 * amount
+    assert fraction.mean() == pytest.approx(0.5 * amount, rel=0.02)  # uniform; 1.6e5 draws, and edges that stay
 
 
 @pytest.mark.parametrize("angle", [0.0, 30.0, 45.0])

@@ -49,10 +49,10 @@ def test_pure_shear_needs_root_three_over_two_of_the_opening_toughness():
 
 
 @pytest.mark.parametrize(
-    "share, printed", [(0.0167, (0.94, 1.68, 2.00, 1.67, 0.72)), (0.2, (0.88, 0.88, 0.62, 0.18, 0.0))]
+    "fraction, printed", [(0.0167, (0.94, 1.68, 2.00, 1.67, 0.72)), (0.2, (0.88, 0.88, 0.62, 0.18, 0.0))]
 )
-def test_concentration_at_a_distance_is_the_printed_one(share, printed):
-    got = [tip(sif_cube(angle), share)[1] for angle in (15.0, 30.0, 45.0, 60.0, 75.0)]
+def test_concentration_at_a_distance_is_the_printed_one(fraction, printed):
+    got = [tip(sif_cube(angle), fraction)[1] for angle in (15.0, 30.0, 45.0, 60.0, 75.0)]
     assert got == pytest.approx(printed, abs=0.0055)  # printed to a hundredth
 
 
@@ -102,17 +102,17 @@ def test_interpolated_intensities_are_mirrored_about_the_load_and_across_it():
 
 
 def test_ends_and_middle_of_a_hole_are_those_of_inglis():
-    share = 0.2
-    assert inglis(0.0, share, 90.0) == pytest.approx(1.0 + 2.0 / share)  # end, pulled across
-    assert inglis(90.0, share, 90.0) == pytest.approx(-1.0)
-    assert inglis(0.0, share, 0.0) == pytest.approx(-1.0)
-    assert inglis(90.0, share, 0.0) == pytest.approx(1.0 + 2.0 * share)  # pulled along
+    fraction = 0.2
+    assert inglis(0.0, fraction, 90.0) == pytest.approx(1.0 + 2.0 / fraction)  # end, pulled across
+    assert inglis(90.0, fraction, 90.0) == pytest.approx(-1.0)
+    assert inglis(0.0, fraction, 0.0) == pytest.approx(-1.0)
+    assert inglis(90.0, fraction, 0.0) == pytest.approx(1.0 + 2.0 * fraction)  # pulled along
     assert inglis(37.0, 1.0 - 1e-12, 0.0) == pytest.approx(1.0 - 2.0 * math.cos(math.radians(74.0)))  # a round hole
 
 
 def test_flaw_across_the_load_is_pulled_in_its_middle_whatever_its_width():
-    for share in (1e-6, 0.1, 0.2):
-        assert mid_face_cube(0.0, share) == pytest.approx(1.0)
+    for fraction in (1e-6, 0.1, 0.2):
+        assert mid_face_cube(0.0, fraction) == pytest.approx(1.0)
         # 3 of the load across it, and 1 + 2 b/a of the pull along it
-        assert mid_face_disc(90.0, share) == pytest.approx(4.0 + 2.0 * share)
+        assert mid_face_disc(90.0, fraction) == pytest.approx(4.0 + 2.0 * fraction)
     assert mid_face_cube(90.0, 0.2) == pytest.approx(-1.4)

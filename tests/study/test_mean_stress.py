@@ -11,7 +11,7 @@ def test_what_is_kept_is_of_the_flaw_and_rock_that_the_runs_have():
     rock = lab_rock()
     assert (WIDTH, LENGTH, TENSILE) == (
         flaw_cracks.WIDTH,
-        rock.averaging.length,
+        rock.nonlocal_mean.length,
         rock.criterion.tensile_strength,
     )
     kept = mean_stress.kept()

@@ -37,4 +37,4 @@ def test_strip_lies_where_the_band_is():
     strip = fullest_strip(x, 20.0, 85.0)
     normal = np.array([-np.sin(np.radians(strip.angle)), np.cos(np.radians(strip.angle))])
     spare = 0.5 * (WIDTH - 3.0 * MM)  # the strip is wider than the band by this much on each side
-    assert strip.place == pytest.approx(normal @ (30.0 * MM, 50.0 * MM), abs=2.0 * spare)
+    assert strip.position == pytest.approx(normal @ (30.0 * MM, 50.0 * MM), abs=2.0 * spare)

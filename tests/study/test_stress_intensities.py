@@ -65,8 +65,8 @@ def disc(angle: float, a: float = 0.3, degree: int = 10) -> tuple[float, float, 
     turn = np.exp(1j * (0.5 * math.pi - math.radians(angle)))  # the load lies along y
 
     def uncracked(z):
-        place, axes = z * turn, np.array([[turn.real, turn.imag], [-turn.imag, turn.real]])
-        sigma = pressed_disc(np.stack([place.real, place.imag], 1), 1.0, np.zeros(1), np.full(1, math.pi))
+        position, axes = z * turn, np.array([[turn.real, turn.imag], [-turn.imag, turn.real]])
+        sigma = pressed_disc(np.stack([position.real, position.imag], 1), 1.0, np.zeros(1), np.full(1, math.pi))
         return axes @ sigma @ axes.T
 
     x, power = a * np.cos(math.pi * (np.arange(60) + 0.5) / 60), 2 * np.arange(degree)

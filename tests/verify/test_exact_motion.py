@@ -19,7 +19,7 @@ T = 0.8 / OMEGA
 each_motion = pytest.mark.parametrize("motion", MOTIONS, ids=name_of)
 
 
-def places(motion, count: int = 40) -> np.ndarray:
+def positions(motion, count: int = 40) -> np.ndarray:
     """Random initial positions inside the body, [count, 2]."""
     rng = np.random.default_rng(3)
     if isinstance(motion, AxisAligned):
@@ -53,7 +53,7 @@ def stress_rate(motion, X: np.ndarray, sigma: np.ndarray, t: float) -> np.ndarra
 
 @each_motion
 def test_velocity_is_the_rate_of_displacement(motion):
-    X, dt = places(motion), 1e-4 * T
+    X, dt = positions(motion), 1e-4 * T
     rate = (motion.displacement(X, T + dt) - motion.displacement(X, T - dt)) / (2.0 * dt)
     np.testing.assert_allclose(motion.velocity(X, T), rate, atol=1e-7 * np.abs(rate).max())
 
@@ -61,7 +61,7 @@ def test_velocity_is_the_rate_of_displacement(motion):
 @each_motion
 def test_stress_follows_the_law_along_a_path(motion):
     """Runge-Kutta integration of the law from the stress-free start."""
-    X, steps = places(motion, 10), 20
+    X, steps = positions(motion, 10), 20
     sigma, dt = np.zeros((len(X), 3, 3)), T / steps
     for k in range(steps):
         t = k * dt
@@ -78,7 +78,7 @@ def test_stress_follows_the_law_along_a_path(motion):
 @each_motion
 def test_force_field_is_what_momentum_lacks(motion):
     """b = a - J div(sigma)/rho_0 by finite differences of displacement and stress, against the kernel's function."""
-    X, dt = places(motion), 1e-3 * T
+    X, dt = positions(motion), 1e-3 * T
     x = [motion.displacement(X, T + k * dt) for k in (-1, 0, 1)]
     inertia = (x[0] - 2.0 * x[1] + x[2]) / dt**2
     F = gradient(motion, X, T)

@@ -168,11 +168,11 @@ PUBLISHED = {"slit_specimen_1mm": (0.9576, 3.23, (7.15, 0.48)), "slit_specimen_2
 def test_specimen_with_round_ends_is_the_published_one(name):
     """E_app / E' to its last digit; k_t to the 1 % claimed for it and its rounding; its place to 0.06 mm, since the
     maximum along the end is flat. Square corners make the slit larger, hence the specimen softer."""
-    ratio, k_t, place = PUBLISHED[name]
+    ratio, k_t, position = PUBLISHED[name]
     metadata = field(name).metadata
     assert metadata["modulus_ratio"]["round"] == pytest.approx(ratio, abs=6e-5)
     assert metadata["k_t"]["value"] == pytest.approx(k_t, rel=0.012)
-    np.testing.assert_allclose(metadata["k_t"]["place_mm"], place, atol=0.06)
+    np.testing.assert_allclose(metadata["k_t"]["place_mm"], position, atol=0.06)
     assert 0.99 * ratio < metadata["modulus_ratio"]["square"] < ratio
 
 

@@ -51,8 +51,8 @@ def static_solution(name: str, **keywords) -> tuple[float, float, np.ndarray]:
     most = sigma_1.argmax()
     (slit,) = slits_of(scene.bodies[0].region)
     modulus = nominal * scene.loading.height / 1e-6 / rock.elasticity.uniaxial_modulus(2)
-    place = 1e3 * np.abs(slit.frame(seeds.x[most : most + 1])[0])
-    return rock.criterion.tensile_strength * nominal / sigma_1[most], modulus, place
+    position = 1e3 * np.abs(slit.frame(seeds.x[most : most + 1])[0])
+    return rock.criterion.tensile_strength * nominal / sigma_1[most], modulus, position
 
 
 def gradients(xi: np.ndarray, shape: tuple[int, int], dx: float) -> coo_array:
@@ -73,13 +73,13 @@ def gradients(xi: np.ndarray, shape: tuple[int, int], dx: float) -> coo_array:
 
 
 def test_static_solution_of_the_slit_cube():
-    stress, modulus, place = static_solution("cube", flaw_width=1e-3)
+    stress, modulus, position = static_solution("cube", flaw_width=1e-3)
     assert stress == pytest.approx(STATIC["cube"][0], rel=1e-3)  # three digits were kept
-    assert place == pytest.approx(STATIC["cube"][1], abs=5e-3)
+    assert position == pytest.approx(STATIC["cube"][1], abs=5e-3)
     assert modulus == pytest.approx(MODULUS_RATIO, abs=5e-5)
 
 
 def test_static_solution_of_the_slit_disc():
-    stress, _, place = static_solution("disc")
+    stress, _, position = static_solution("disc")
     assert stress == pytest.approx(STATIC["disc"][0], rel=1e-3)
-    assert place == pytest.approx(STATIC["disc"][1], abs=1e-2)
+    assert position == pytest.approx(STATIC["disc"][1], abs=1e-2)

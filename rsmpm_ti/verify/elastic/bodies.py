@@ -52,13 +52,13 @@ class Wheel:
         particles.u.fill(0.0)
         particles.J.fill(1.0)
         sort_particles(drive.sim)
-        particles.v.from_numpy(velocity + self.place @ gradient.T)
+        particles.v.from_numpy(velocity + self.position @ gradient.T)
         particles.C.from_numpy(np.tile(gradient, (particles.count, 1, 1)))
         particles.sigma.from_numpy(np.tile(sigma, (particles.count, 1)))
         drive.clock.step, drive.clock.dt = 0, cfl * self.dx / self.c
 
     @property
-    def place(self) -> np.ndarray:
+    def position(self) -> np.ndarray:
         """Positions from the centre."""
         return self.particles.reference.to_numpy() + self.particles.u.to_numpy() - self.centre
 
@@ -69,7 +69,7 @@ class Wheel:
     @property
     def angular_momentum(self) -> float:
         """x cross v, and what the affine matrix carries: D = dx^2/4 for quadratic B-splines (Jiang et al. 2015)."""
-        x, v, C = self.place, self.particles.v.to_numpy(), self.particles.C.to_numpy()
+        x, v, C = self.position, self.particles.v.to_numpy(), self.particles.C.to_numpy()
         orbital = x[:, 0] * v[:, 1] - x[:, 1] * v[:, 0]
         return float(self.mass @ (orbital + 0.25 * self.dx**2 * (C[:, 1, 0] - C[:, 0, 1])))
 
@@ -104,7 +104,7 @@ def _turn(wheel: Wheel) -> tuple[list, np.ndarray]:
     record = []
     for k in range(1, TURN + 1):
         wheel.drive.advance(1)
-        wheel.particles.v.from_numpy(wheel.place @ gradient.T)
+        wheel.particles.v.from_numpy(wheel.position @ gradient.T)
         xx, yy, zz, xy = wheel.particles.sigma.to_numpy().T
         exact = turned(k * angle) @ SHEAR @ turned(k * angle).T
         missed = (xx - MEAN - exact[0, 0], yy - MEAN - exact[1, 1], zz - 3e6, xy - exact[0, 1])
@@ -132,7 +132,7 @@ def _free_spin(wheel: Wheel) -> list:
         drift = max(drift, abs(wheel.angular_momentum / start - 1.0))
         xx, yy, _, _ = wheel.particles.sigma.to_numpy().T
         tension = wheel.particles.volume.to_numpy() * wheel.particles.J.to_numpy() @ (xx + yy)
-        virial.append(tension / (w**2 * wheel.mass @ (wheel.place**2).sum(axis=1)))
+        virial.append(tension / (w**2 * wheel.mass @ (wheel.position**2).sum(axis=1)))
     why = "APIC keeps it to round-off of 1600 steps"
     rows = [at_most("free spin: change of angular momentum", drift, 1e-12, why)]
     why = "mean over 1600 steps of a ringing that starts with 100 % and that APIC damps"
@@ -201,11 +201,11 @@ def colliding_discs(full: bool) -> Outcome:
     for name, shape, dx in runs:
         history, kept = _collision(shape, dx)
         histories.append((name, history))
-        time, kinetic, elastic_share = history.T
+        time, kinetic, elastic_fraction = history.T
         why = "every scatter and gather keeps momentum: round-off of 300 steps"
         rows.append(at_most(f"{name}: momentum over one disc's", kept["drift"], 1e-12, why))
         why = "MUSL and FLIP at 8 cells a diameter lose or gain 2-3 % as particles cross cells"
-        rows.append(relative(f"{name}: energy at the end", 1.0, kinetic[-1] + elastic_share[-1], 0.03, why))
+        rows.append(relative(f"{name}: energy at the end", 1.0, kinetic[-1] + elastic_fraction[-1], 0.03, why))
         why = "the rest is vibration"
         after = kinetic[time > APART].mean()
         rows.append(at_least(f"{name}: kinetic energy after the rebound", after, 0.85, why))
@@ -216,10 +216,10 @@ def colliding_discs(full: bool) -> Outcome:
     def draw(figure):
         axes = figure.subplots()
         for name, history in histories:
-            time, kinetic, elastic_share = history.T
+            time, kinetic, elastic_fraction = history.T
             colour = axes.plot(time, kinetic, label=f"kinetic, {name}")[0].get_color()
-            axes.plot(time, elastic_share, ":", color=colour)
-            axes.plot(time, kinetic + elastic_share, "--", color=colour)
+            axes.plot(time, elastic_fraction, ":", color=colour)
+            axes.plot(time, kinetic + elastic_fraction, "--", color=colour)
         axes.axvline(1.586, color="0.5", linewidth=0.8)
         axes.axhline(1.0, color="k", linewidth=0.8)
         axes.set(xlabel="time [s]", ylabel="energy over its start", title="Discs; dotted: elastic, dashed: sum")

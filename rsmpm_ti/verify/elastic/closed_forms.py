@@ -14,14 +14,14 @@ CRACK_SHARE = 0.3
 """a/R for which those hold."""
 
 
-def hondros(arc: float, share: np.ndarray, loaded: bool) -> tuple[np.ndarray, np.ndarray]:
+def hondros(arc: float, fraction: np.ndarray, loaded: bool) -> tuple[np.ndarray, np.ndarray]:
     """(s_xx, s_yy) over s0 = P/(pi R B) on a diameter of a disc pressed along y by uniform radial pressure.
 
     arc: half-angle of the two pressed arcs; share: distance from the centre over R; loaded: on the diameter along y,
     else on the one along x.  Hondros (1959), Austral. J. Appl. Sci. 10:243: the tangential and radial stresses of his
     closed forms for the two diameters, with p = P/(2 arc R B).
     """
-    q, sign = share**2, -1.0 if loaded else 1.0
+    q, sign = fraction**2, -1.0 if loaded else 1.0
     a = (1.0 - q) * math.sin(2.0 * arc) / (1.0 + sign * 2.0 * q * math.cos(2.0 * arc) + q**2)
     b = np.arctan2((1.0 - sign * q) * math.tan(arc), 1.0 + sign * q)
     return (a - b) / arc, -(a + b) / arc

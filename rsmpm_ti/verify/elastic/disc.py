@@ -112,14 +112,14 @@ class _Diameter:
         return rows
 
 
-def _diameter(places, found, exact, dx: float, equal_arc: float, loaded: bool) -> _Diameter:
+def _diameter(positions, found, exact, dx: float, equal_arc: float, loaded: bool) -> _Diameter:
     along, most = (1, 0.7 * R) if loaded else (0, 0.8 * R)
-    on = (np.abs(places[:, 1 - along]) < dx) & (np.abs(places[:, along]) < most)
-    share = np.abs(places[on, along]) / R
-    ours, wider = (hondros(arc, share, loaded) for arc in (equal_arc, equal_arc + dx / R))
+    on = (np.abs(positions[:, 1 - along]) < dx) & (np.abs(positions[:, along]) < most)
+    fraction = np.abs(positions[on, along]) / R
+    ours, wider = (hondros(arc, fraction, loaded) for arc in (equal_arc, equal_arc + dx / R))
     doubt = tuple(rms(b - a) for a, b in zip(ours, wider, strict=True))
     name = "loaded diameter" if loaded else "other diameter"
-    return _Diameter(name, places[on, along], found[on], exact[on], ours, doubt)
+    return _Diameter(name, positions[on, along], found[on], exact[on], ours, doubt)
 
 
 def hondros_disc(full: bool) -> Outcome:
@@ -132,13 +132,13 @@ def hondros_disc(full: bool) -> Outcome:
     dx = 0.5e-3 if full else 1e-3
     disc = _press(dx, ARC, Lattice(fitted=True), flaw_length=0.0)
     nodes, forces = _node_forces(disc)
-    places, found = disc.cells(disc.sigma)
+    positions, found = disc.cells(disc.sigma)
     exact = disc.cells(pressed_disc(disc.x, R, nodes, forces))[1]
     equal_arc = math.asin(math.sqrt(3.0 * (forces @ nodes**2) / forces.sum()) / R)
-    diameters = [_diameter(places, found, exact, dx, equal_arc, loaded) for loaded in (True, False)]
+    diameters = [_diameter(positions, found, exact, dx, equal_arc, loaded) for loaded in (True, False)]
     balance = forces.sum() / (math.pi * R)
     rows = [relative("force of the nodes / force of the platens", 1.0, balance, 0.001, "a static state swings by this")]
-    centre, zero = np.linalg.norm(places, axis=1) < dx, np.zeros(1)
+    centre, zero = np.linalg.norm(positions, axis=1) < dx, np.zeros(1)
     for k, key in enumerate(("s_xx", "s_yy")):
         ours, wider = (float(hondros(arc, zero, True)[k][0]) for arc in (equal_arc, equal_arc + dx / R))
         why = f"1 % of s0, and {abs(wider - ours):.4f}, which one more cell of loaded arc changes"
@@ -157,8 +157,10 @@ def hondros_disc(full: bool) -> Outcome:
                 ax.plot(at, diameter.hondros[k][order], "k--", linewidth=0.7, label=f"{key}, {name}")
             ax.set(xlabel=f"along the {diameter.name} [mm]", ylabel="stress / s0")
         upper.legend(fontsize="x-small", ncols=2, loc="upper center", bbox_to_anchor=(0.5, 0.86))
-        error = np.where(np.linalg.norm(places, axis=1) < 0.9 * R, found[:, 1, 1] - exact[:, 1, 1], np.nan)
-        image = field.scatter(*(1e3 * places.T), c=100.0 * error, s=1.0, cmap="RdBu_r", vmin=-3.0, vmax=3.0, marker="s")
+        error = np.where(np.linalg.norm(positions, axis=1) < 0.9 * R, found[:, 1, 1] - exact[:, 1, 1], np.nan)
+        image = field.scatter(
+            *(1e3 * positions.T), c=100.0 * error, s=1.0, cmap="RdBu_r", vmin=-3.0, vmax=3.0, marker="s"
+        )
         field.set(aspect="equal", title="s_yy - exact [% of s0]", xlabel="x [mm]", ylabel="y [mm]")
         figure.colorbar(image, ax=field)
         axes[1, 1].bar(1e3 * nodes, forces / dx / (math.pi * R), width=0.8e3 * dx, color="0.6")
@@ -196,12 +198,12 @@ def _tip(theta: float, dx: float) -> _Tip:
     width = 2.0 * dx
     flaw = {"flaw_angle": 90.0 - theta, "flaw_length": 2.0 * A, "flaw_width": width}
     disc = _press(dx, POINT_LIKE, Lattice(), **flaw)
-    places, found = disc.cells(disc.sigma)
+    positions, found = disc.cells(disc.sigma)
     c, s = math.sin(math.radians(theta)), math.cos(math.radians(theta))
     Q = np.array([[c, s], [-s, c]])
-    places, found = places @ Q.T, Q @ found @ Q.T
-    places *= np.where(places[:, :1] < 0.0, -1.0, 1.0)  # half a turn maps the disc on itself, and stress likewise
-    d = places - np.array([A, 0.0])
+    positions, found = positions @ Q.T, Q @ found @ Q.T
+    positions *= np.where(positions[:, :1] < 0.0, -1.0, 1.0)  # half a turn maps the disc on itself, and stress likewise
+    d = positions - np.array([A, 0.0])
     r, angle = np.hypot(d[:, 0], d[:, 1]), np.arctan2(d[:, 1], d[:, 0])
     beside = (np.abs(d[:, 1]) < width) & (d[:, 0] < 0.5 * width)  # cells that the slit cuts
     used = (r > RING[0]) & (r < RING[1]) & ~beside

@@ -22,7 +22,7 @@ R = 5e-3
 HALF = 10.0 * R
 """Half width and half height of the plate [m]: what is missing of an infinite one is 1 % at 10 R, its (R/HALF)^2."""
 
-NEAR, FAR = 1.2, 3.0
+RING_INNER, RING_OUTER = 1.2, 3.0
 """Distances from the centre, in R, between which stress is compared."""
 
 
@@ -64,10 +64,10 @@ class _Axis:
         return float(np.linalg.lstsq(powers, self.found, rcond=None)[0].sum())
 
 
-def _axis(places: np.ndarray, found: np.ndarray, exact: np.ndarray, dx: float, along: int) -> _Axis:
+def _axis(positions: np.ndarray, found: np.ndarray, exact: np.ndarray, dx: float, along: int) -> _Axis:
     k = 1 - along  # across the axis is tangential
-    on = places[:, k] < dx
-    return _Axis(np.linalg.norm(places[on], axis=1) / R, found[on, k, k], exact[on, k, k])
+    on = positions[:, k] < dx
+    return _Axis(np.linalg.norm(positions[on], axis=1) / R, found[on, k, k], exact[on, k, k])
 
 
 def kirsch_hole(full: bool) -> Outcome:
@@ -79,11 +79,11 @@ def kirsch_hole(full: bool) -> Outcome:
     dx = R / (20 if full else 10)
     static = static_state(plate(dx))
     x, volume, stress = static.snapshot.x, static.snapshot.volume, static.sigma[:, :2, :2] / static.nominal
-    places, found = cell_means(x, volume, stress, dx)
-    r, exact = np.linalg.norm(places, axis=1) / R, -kirsch(places, R)
-    ring = (r > NEAR) & (r < FAR)
+    positions, found = cell_means(x, volume, stress, dx)
+    r, exact = np.linalg.norm(positions, axis=1) / R, -kirsch(positions, R)
+    ring = (r > RING_INNER) & (r < RING_OUTER)
     error = found - exact
-    crown, side = (_axis(places[ring], found[ring], exact[ring], dx, along) for along in (1, 0))
+    crown, side = (_axis(positions[ring], found[ring], exact[ring], dx, along) for along in (1, 0))
     beside = (np.abs(crown.found - crown.exact).max(), np.abs(side.found / side.exact - 1.0).max())
     why = "5 % at 10 cells a radius from 1.2 R on"
     edge = "the same; of it 1 % is the plate's finite width"
@@ -107,10 +107,10 @@ def kirsch_hole(full: bool) -> Outcome:
             left.plot(1.0, axis.at_edge(), "o", color=colour, fillstyle="none", label="MPM, continued to the edge")
         left.set(xlabel="r / R", ylabel="tangential stress / S", title=f"{R / dx:.0f} cells a radius")
         left.legend(fontsize="x-small")
-        shown = r < FAR
+        shown = r < RING_OUTER
         size = np.linalg.norm(error[shown].reshape(-1, 4), axis=1)
         image = right.scatter(
-            *(places[shown] / R).T, c=100.0 * size, s=1500.0 * dx / R, marker="s", vmin=0.0, vmax=10.0
+            *(positions[shown] / R).T, c=100.0 * size, s=1500.0 * dx / R, marker="s", vmin=0.0, vmax=10.0
         )
         right.set(aspect="equal", xlabel="x / R", ylabel="y / R", title="|sigma - Kirsch| / S [%]; load along y")
         figure.colorbar(image, ax=right)

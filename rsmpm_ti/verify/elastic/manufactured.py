@@ -60,7 +60,7 @@ def _scene(motion, region, lower, upper, walls, *, cells, shape, transfer=FLIP, 
 def square(amplitude: float, **choices) -> Scene:
     """The axis-aligned motion, between four frictionless walls; choices as in `_scene`."""
     sides = (("lower", 0.0), ("upper", 1.0))
-    walls = tuple(Wall(axis=axis, side=side, position=place) for axis in (0, 1) for side, place in sides)
+    walls = tuple(Wall(axis=axis, side=side, position=position) for axis in (0, 1) for side, position in sides)
     box = Box(lower=(0.0, 0.0), upper=(1.0, 1.0))
     return _scene(_motion(AxisAligned, amplitude), box, box.lower, box.upper, walls, **choices)
 

@@ -173,7 +173,7 @@ def elastica(full: bool) -> Outcome:
         shapes.append((f"q = {q:g}, {cells} cells", particles, line, exact))
         missed = np.linalg.norm(line[-1] - exact[-1]) / np.linalg.norm(exact[-1] - [1.0, 0.0])
         name = f"q = {q:g}, {cells} cells:"
-        why = "B-splines make free faces too soft by a share of a cell, so the error falls with it; shear 0.4 %"
+        why = "B-splines make free faces too soft by a fraction of a cell, so the error falls with it; shear 0.4 %"
         rows.append(at_most(f"{name} error of the tip over its way", float(missed), 0.03, why))
         why = "as the tip, whose displacement does the work"
         rows.append(relative(f"{name} strain energy/(E'I/L)", exact_energy, energy, 0.05, why))

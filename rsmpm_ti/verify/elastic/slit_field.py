@@ -26,7 +26,7 @@ PLANE_STRAIN_MODULUS = 17e9 / (1.0 - 0.14**2)
 
 
 def slit_distance(slit: Slit, x: np.ndarray) -> np.ndarray:
-    """Distance of places x [n, 2] from a slit's rectangle [m], [n]."""
+    """Distance of positions x [n, 2] from a slit's rectangle [m], [n]."""
     beyond = np.abs(slit.frame(x)) - 0.5 * np.array([slit.length, slit.width])
     return np.hypot(*np.maximum(beyond, 0.0).T)
 
@@ -41,7 +41,7 @@ def largest_principal(sigma: np.ndarray) -> np.ndarray:
 
 @dataclass(frozen=True)
 class FieldError:
-    """sigma_1 over nominal stress: of the particles [n], of the FE at their places [n], and how far they differ."""
+    """sigma_1 over nominal stress: of the particles [n], of the FE at their positions [n], and how far they differ."""
 
     x: np.ndarray
     got: np.ndarray
@@ -120,8 +120,8 @@ def _where_the_error_sits(error: FieldError) -> list[Row]:
         "the platens": np.minimum(x[:, 1], 0.1 - x[:, 1]) < 0.75e-3,
     }
     why = "half a cell that is missing at a surface is 0.25 of 50 mm"
-    for name, place in beside.items():
-        rms = float(np.sqrt(np.mean((error.got - error.reference)[place & error.away] ** 2)))
+    for name, position in beside.items():
+        rms = float(np.sqrt(np.mean((error.got - error.reference)[position & error.away] ** 2)))
         rows.append(at_most(f"sigma_1 rms error beside {name}, dx 0.5 mm", rms, 0.005, why))
     return rows
 
@@ -159,12 +159,12 @@ def specimen(full: bool) -> Outcome:
         expected = field.metadata["modulus_ratio"]["square"]
         rows.append(relative(f"modulus / E', {at}", expected, ratio, modulus, TIED_ENDS))
         (slit,) = slits_of(scene.bodies[0].region)
-        place = np.abs(slit.frame(error.x[[error.got.argmax()]])[0])
+        position = np.abs(slit.frame(error.x[[error.got.argmax()]])[0])
         expected = field.metadata["k_t"]["place_mm"]
         why = "one cell and a half: a particle sits up to half a cell inside the face, whose corner is not round"
         for axis, name in enumerate(("along", "across")):
             quantity = f"largest tension, {name} the flaw, {at} [mm]"
-            rows.append(difference(quantity, expected[axis], 1e3 * place[axis], 1.5e3 * dx, why))
+            rows.append(difference(quantity, expected[axis], 1e3 * position[axis], 1.5e3 * dx, why))
 
     rows += _where_the_error_sits(shown)
     if full:

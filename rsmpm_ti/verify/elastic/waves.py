@@ -66,9 +66,9 @@ class Front:
         """Cells by which the 50 % level is late."""
         late = np.flatnonzero(self.middle < -0.5)[0]
         a, b = self.middle[late - 1 : late + 1]
-        share = (-0.5 - a) / (b - a)
+        fraction = (-0.5 - a) / (b - a)
         row = self.y[np.searchsorted(self.y, HALF * round(self.y[-1])) - 1]
-        return float(self.times[late - 1] + share * (self.times[late] - self.times[late - 1]) - row)
+        return float(self.times[late - 1] + fraction * (self.times[late] - self.times[late - 1]) - row)
 
 
 def step_wave(shape, cells: int) -> Front:

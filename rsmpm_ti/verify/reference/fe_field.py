@@ -32,13 +32,13 @@ class FiniteElementField:
     find: object  # matplotlib's triangle finder: (x, y) -> triangle, -1 outside
 
     def sigma(self, x: np.ndarray) -> np.ndarray:
-        """Cauchy stress over the nominal stress at places x [m, 2] in metres; [m, 3, 3], tension positive."""
+        """Cauchy stress over the nominal stress at positions x [m, 2] in metres; [m, 3, 3], tension positive."""
         xx, yy, zz, xy = self._interpolated(self.stress, x).T
         o = np.where(np.isnan(xx), np.nan, 0.0)
         return np.stack([xx, xy, o, xy, yy, o, o, o, zz], axis=1).reshape(-1, 3, 3)
 
     def displacement(self, x: np.ndarray) -> np.ndarray:
-        """Displacement [m] for a nominal stress of 1 MPa at places x [m, 2] in metres; [m, 2]."""
+        """Displacement [m] for a nominal stress of 1 MPa at positions x [m, 2] in metres; [m, 2]."""
         return self._interpolated(self.u, x)
 
     def _interpolated(self, values: np.ndarray, x: np.ndarray) -> np.ndarray:

@@ -61,7 +61,7 @@ class Solution:
     unknowns: int
 
     def at(self, x: np.ndarray) -> np.ndarray:
-        """u_x, u_y and STRESSES at places x [m, 2] -> [m, 6]."""
+        """u_x, u_y and STRESSES at positions x [m, 2] -> [m, 6]."""
         basis, cells = self.basis, _cells(self.basis.mesh, x)
         local = np.full((2, len(x), 1), 1.0 / 3.0)
         for _ in range(5):  # Newton; not skfem's invF, which never ends for places 1e-12 outside of their triangle
@@ -205,7 +205,7 @@ def write(path: Path, points: np.ndarray, cells: np.ndarray, values: np.ndarray)
         meshio.write(part, mesh, file_format="vtu", binary=True, compression="zlib")
 
 
-def places_away(specimen: Plate | Disc) -> np.ndarray:
+def positions_away(specimen: Plate | Disc) -> np.ndarray:
     """Random places in the specimen, farther than AWAY from the slit; [m, 2]."""
     x = np.random.default_rng(1).uniform(0.0, 1.0, (PLACES, 2)) * specimen.box
     return x[(specimen.depth(x) > 0.01) & (slit_distance(specimen.slit, x) > AWAY)]
@@ -232,11 +232,11 @@ def make(name: str, out: Path) -> dict:
         {ends: solutions["none"].shortening / solutions[ends].shortening for ends in ("square", "round")}
         for solutions in (fine, coarse)
     )
-    k_t, place = fine["round"].largest_tension(specimen.slit)
+    k_t, position = fine["round"].largest_tension(specimen.slit)
     points, cells, values = sample(fine["square"], specimen)
     path = out / f"{name}.vtu"
     write(path, points, cells, values)
-    x = places_away(specimen)
+    x = positions_away(specimen)
     exact = fine["square"].at(x)[:, 2:]
     read = read_field(path, {}).sigma(1e-3 * x)
     return {
@@ -247,7 +247,7 @@ def make(name: str, out: Path) -> dict:
         "displacement": "in metres for a nominal stress of 1 MPa; mean u_x of the specimen is zero",
         "modulus_ratio": {"meaning": "shortening without the slit over shortening with it", **ratios},
         "shortening_mm": {ends: solution.shortening for ends, solution in fine.items()},
-        "k_t": {"meaning": "largest sigma_1 on the slit with round ends", "value": k_t, "place_mm": place},
+        "k_t": {"meaning": "largest sigma_1 on the slit with round ends", "value": k_t, "place_mm": position},
         "mesh": {"spacing": vars(FINE), "unknowns": {ends: solution.unknowns for ends, solution in fine.items()}},
         "change_from_mesh_twice_as_coarse": {
             "modulus_ratio": {ends: ratios[ends] - coarse_ratios[ends] for ends in ratios},

@@ -10,7 +10,7 @@ from rsmpm_ti.spec.regions import Slit
 ARC = math.radians(5.0)
 """Half-angle of the loaded arcs of a disc [rad]."""
 
-NEAR = 1e-6
+ON_EDGE = 1e-6
 """Places closer than this are one place [mm]."""
 
 
@@ -53,15 +53,15 @@ class Plate:
     def prescribed(self, x: np.ndarray, axis: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Which displacement components are given, bool [n], and their values [mm, n]; axis [n] is 0 or 1."""
         top, bottom = self.top(x), self.bottom(x)
-        pin = bottom & (x[:, 0] < NEAR)  # without it the plate could slide
+        pin = bottom & (x[:, 0] < ON_EDGE)  # without it the plate could slide
         return np.where(axis == 1, top | bottom, pin), np.where((axis == 1) & top, -1.0, 0.0)
 
     def top(self, x: np.ndarray) -> np.ndarray:
         """Places under the upper platen; x [n, 2] -> bool [n]."""
-        return x[:, 1] > self.height - NEAR
+        return x[:, 1] > self.height - ON_EDGE
 
     def bottom(self, x: np.ndarray) -> np.ndarray:
-        return x[:, 1] < NEAR
+        return x[:, 1] < ON_EDGE
 
     def nominal_stress(self, platen_force: float) -> float:
         """S [MPa] from the force of the top platen [N/mm]."""
@@ -118,15 +118,15 @@ class Disc:
 
     def prescribed(self, x: np.ndarray, axis: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Three components at the ends of the horizontal diameter, only against rigid motion: the load balances."""
-        right, left = (np.linalg.norm(x - np.array(self.point(angle)), axis=1) < NEAR for angle in (0.0, math.pi))
+        right, left = (np.linalg.norm(x - np.array(self.point(angle)), axis=1) < ON_EDGE for angle in (0.0, math.pi))
         return np.where(axis == 1, right | left, left), np.zeros(len(x))
 
     def top(self, x: np.ndarray) -> np.ndarray:
         """The upper pole; x [n, 2] -> bool [n]."""
-        return x[:, 1] > self.centre[1] + self.radius - NEAR
+        return x[:, 1] > self.centre[1] + self.radius - ON_EDGE
 
     def bottom(self, x: np.ndarray) -> np.ndarray:
-        return x[:, 1] < self.centre[1] - self.radius + NEAR
+        return x[:, 1] < self.centre[1] - self.radius + ON_EDGE
 
     def nominal_stress(self, platen_force: float) -> float:
         """The pressure is that of s0 = 1 MPa."""
@@ -210,15 +210,20 @@ def _closed(geo, points: list[int]) -> list[int]:
 
 
 def _slit_outline(geo, slit: Slit, ends: str) -> list[int]:
-    def place(along, across):
+    def position(along, across):
         return geo.addPoint(*from_frame(slit, np.array([along, across])), 0.0)
 
     a, b = 0.5 * slit.length, 0.5 * slit.width
     if ends == "square":
-        return _closed(geo, [place(-a, -b), place(a, -b), place(a, b), place(-a, b)])
+        return _closed(geo, [position(-a, -b), position(a, -b), position(a, b), position(-a, b)])
     c = a - b
-    lower_left, lower_right, upper_right, upper_left = place(-c, -b), place(c, -b), place(c, b), place(-c, b)
-    right, right_end, left, left_end = place(c, 0.0), place(a, 0.0), place(-c, 0.0), place(-a, 0.0)
+    lower_left, lower_right, upper_right, upper_left = (
+        position(-c, -b),
+        position(c, -b),
+        position(c, b),
+        position(-c, b),
+    )
+    right, right_end, left, left_end = position(c, 0.0), position(a, 0.0), position(-c, 0.0), position(-a, 0.0)
     return [
         geo.addLine(lower_left, lower_right),
         geo.addCircleArc(lower_right, right, right_end),

@@ -24,7 +24,7 @@ SHARES: dict[str, Callable] = {
     ),
     "ExponentialSoftening": lambda strain, strength, energy: np.exp(-strain * BAND * strength / energy),
 }
-"""Share of a strength that is left after a crack strain, by the name of the softening law."""
+"""Fraction of a strength that is left after a crack strain, by the name of the softening law."""
 
 
 def root(falling: Callable, low: np.ndarray, high: np.ndarray) -> np.ndarray:
@@ -37,19 +37,19 @@ def root(falling: Callable, low: np.ndarray, high: np.ndarray) -> np.ndarray:
     return 0.5 * (low + high)
 
 
-def across(shut: np.ndarray, name: str) -> tuple[np.ndarray, np.ndarray]:
+def across(closed: np.ndarray, name: str) -> tuple[np.ndarray, np.ndarray]:
     """(stress, crack strain) across a crack; `shut` [steps]: what the stress would be without it.
 
     shut - M e = f(e) while it opens, along the secant f(k)/k below its largest opening k, shut below 0.
     """
-    most = np.maximum.accumulate(shut)
-    widest = root(lambda e: most - M * e - TENSILE * SHARES[name](e, TENSILE, G_F_I), 0.0 * most, most / M)
-    widest = np.where(most >= TENSILE, widest, 0.0)
-    left = TENSILE * SHARES[name](widest, TENSILE, G_F_I)
+    most = np.maximum.accumulate(closed)
+    strain_max = root(lambda e: most - M * e - TENSILE * SHARES[name](e, TENSILE, G_F_I), 0.0 * most, most / M)
+    strain_max = np.where(most >= TENSILE, strain_max, 0.0)
+    left = TENSILE * SHARES[name](strain_max, TENSILE, G_F_I)
     with np.errstate(invalid="ignore"):
-        secant = np.where(widest > 0.0, shut * widest / (M * widest + left), 0.0)
-    opening = np.clip(secant, 0.0, widest)
-    return shut - M * opening, opening
+        secant = np.where(strain_max > 0.0, closed * strain_max / (M * strain_max + left), 0.0)
+    opening = np.clip(secant, 0.0, strain_max)
+    return closed - M * opening, opening
 
 
 def pulled(strain: np.ndarray, name: str) -> np.ndarray:
@@ -66,24 +66,24 @@ def pulled(strain: np.ndarray, name: str) -> np.ndarray:
     return np.stack([xx, yy, zz, 0.0 * xx], axis=1)
 
 
-def friction_limit(slip: np.ndarray, pressure: float, share: float, name: str) -> np.ndarray:
+def friction_limit(slip: np.ndarray, pressure: float, fraction: float, name: str) -> np.ndarray:
     """Largest shear on a closed crack: tau^2 = (c + p tan phi_r)^2 - (c - f tan phi_r)^2, Carol et al. (1997), eq. 3.
 
-    c and f have lost the larger share of what opening (`share` is left) and slip have cost them.
+    c and f have lost the larger fraction of what opening (`share` is left) and slip have cost them.
     """
-    left = np.minimum(share, SHARES[name](slip, COHESION, G_F_II))
+    left = np.minimum(fraction, SHARES[name](slip, COHESION, G_F_II))
     c, f = COHESION * left, TENSILE * left
     return np.sqrt((c + pressure * TAN_R) ** 2 - (c - f * TAN_R) ** 2)
 
 
-def sheared(shear: np.ndarray, pressure: float, share: float, name: str) -> np.ndarray:
+def sheared(shear: np.ndarray, pressure: float, fraction: float, name: str) -> np.ndarray:
     """Shear stress [steps] on a fixed closed crack under engineering shear that rises to its largest and comes back."""
 
     def leg(gamma, tau, slip):
         """From (tau, slip) on, by a further shear gamma >= 0: elastic, or sliding at its limit."""
 
         def excess(more):
-            return tau + MU * (gamma - more) - friction_limit(slip + more, pressure, share, name)
+            return tau + MU * (gamma - more) - friction_limit(slip + more, pressure, fraction, name)
 
         more = np.where(excess(0.0 * gamma) > 0.0, root(excess, 0.0 * gamma, gamma + abs(tau) / MU), 0.0)
         return tau + MU * (gamma - more), slip + more
@@ -116,9 +116,9 @@ def crushed(strain: np.ndarray, name: str) -> tuple[np.ndarray, int]:
     failed = np.arange(len(strain)) >= first
 
     def envelope(slip):
-        share = SHARES[name](np.maximum(slip, 1e-12), COHESION, G_F_II)  # failed: something has slipped
-        sin = SIN_R + (SIN - SIN_R) * share
-        return sin, share * COHESION * np.sqrt(1.0 - sin**2)
+        fraction = SHARES[name](np.maximum(slip, 1e-12), COHESION, G_F_II)  # failed: something has slipped
+        sin = SIN_R + (SIN - SIN_R) * fraction
+        return sin, fraction * COHESION * np.sqrt(1.0 - sin**2)
 
     def excess(slip):
         sin, c_cos = envelope(slip)

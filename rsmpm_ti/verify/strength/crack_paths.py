@@ -133,8 +133,8 @@ def expected(law: Directional) -> dict[str, np.ndarray]:
     if law.rotating:
         after = by_hand.turning(strain[path][shut:], name)
     else:
-        share = float(by_hand.SHARES[name](opening.max(), TENSILE, G_F_I))
-        tau = by_hand.sheared(2.0 * shear[shut:], PRESSURE, share, name)
+        fraction = float(by_hand.SHARES[name](opening.max(), TENSILE, G_F_I))
+        tau = by_hand.sheared(2.0 * shear[shut:], PRESSURE, fraction, name)
         after = np.tile(before[-1], (len(tau), 1))
         after[:, 3] = tau
     forms[path] = np.concatenate([before, after])

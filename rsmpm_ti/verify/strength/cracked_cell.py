@@ -37,7 +37,7 @@ PASSES_STEP, SPEED = 4e-6, 0.1
 
 @dataclass(frozen=True, kw_only=True)
 class ThereAndBack:
-    """The platen's share of its speed, step by step: out, a part back, all the way out, back and into the rock."""
+    """The platen's fraction of its speed, step by step: out, a part back, all the way out, back and into the rock."""
 
     dt: float
     wide: float

@@ -31,7 +31,7 @@ def _paper(name: str, **keywords):
 
 
 def _failure_rows(name: str, scene, summary: dict) -> list[Row]:
-    stress, place = STATIC[name]
+    stress, position = STATIC[name]
     (slit,) = slits_of(scene.bodies[0].region)
     found = np.abs(slit.frame(np.array([summary["first_failure_position_m"]]))[0])
     why = "mass scaling leaves waves of 1-2 % in the load: 0.789 MPa at time_scale 4, 0.800 at 10 for the cube"
@@ -40,7 +40,7 @@ def _failure_rows(name: str, scene, summary: dict) -> list[Row]:
     rows.append(difference(f"{name}: label", 1.0, float(summary["first_failure_mode"] == "tension"), 0.0, why))
     for axis, direction in enumerate(("along", "across")):
         quantity = f"{name}: place {direction} the flaw [mm]"
-        rows.append(difference(quantity, place[axis], 1e3 * found[axis], 0.5, "one cell"))
+        rows.append(difference(quantity, position[axis], 1e3 * found[axis], 0.5, "one cell"))
     return rows
 
 

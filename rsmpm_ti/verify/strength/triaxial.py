@@ -39,7 +39,7 @@ PRESSURES, QUICK = (0.0, 5e6, 10e6, 15e6, 30e6), (5e6, 30e6)
 
 SIZE, DX = (10e-3, 20e-3), 1e-3
 HALF_WAY = 0.5
-"""Share of the load increment at failure at which strains and the stress out of the plane are read."""
+"""Fraction of the load increment at failure at which strains and the stress out of the plane are read."""
 
 
 @dataclass(frozen=True)

@@ -148,12 +148,12 @@ def weibull_size(full: bool) -> Outcome:
         for n in (1, 2):
             own = pulled.per_axis == n
             label = f"strips, {n * n} particle{'s' if n > 1 else ''} in a cell"
-            place, strength = 1e6 * (AREAS[pulled.size] * shift)[own], mpa * pulled.strength[own]
-            axes.plot(place, strength, ".", markersize=3, alpha=0.5, color=f"C{n - 1}", label=label)
+            position, strength = 1e6 * (AREAS[pulled.size] * shift)[own], mpa * pulled.strength[own]
+            axes.plot(position, strength, ".", markersize=3, alpha=0.5, color=f"C{n - 1}", label=label)
         axes.errorbar(1e6 * AREAS, mpa * means, 3.0 * error * mpa * means, fmt="ko", capsize=4, label="mean, 3 errors")
         axes.plot(1e6 * AREAS, mpa * expected, "k--", label="Weibull, mean")
-        for share in (0.05, 0.95):
-            axes.plot(1e6 * AREAS, mpa * expected / MEAN * weibull_min(MODULUS).ppf(share), "k:", linewidth=0.8)
+        for fraction in (0.05, 0.95):
+            axes.plot(1e6 * AREAS, mpa * expected / MEAN * weibull_min(MODULUS).ppf(fraction), "k:", linewidth=0.8)
         axes.set(xscale="log", yscale="log", xlabel="area [mm2]", ylabel="tensile strength [MPa]")
         axes.minorticks_off()
         for axis, ticks in ((axes.xaxis, 1e6 * AREAS), (axes.yaxis, (0.5, 1.0, 1.5, 2.0, 3.0, 4.0))):
