@@ -1,6 +1,7 @@
 """The command line: python -m rsmpm_ti.scene NAME [options]. Exit status 0 done, 2 bad input, 3 unstable."""
 
 import argparse
+import math
 import sys
 from dataclasses import replace
 from pathlib import Path
@@ -9,14 +10,14 @@ from rsmpm_ti.errors import SceneError, UnstableRun, shown
 from rsmpm_ti.spec.loader import available, find, keywords_of, load_scene, scene_name
 from rsmpm_ti.spec.mass_scaling import estimate
 from rsmpm_ti.spec.scene import Scene
-from rsmpm_ti.spec.scene_checks import BYTES_PER_NODE, BYTES_PER_PARTICLE
+from rsmpm_ti.spec.scene_checks import memory_of_nodes, memory_of_particles
 from rsmpm_ti.spec.scene_json import schema
 
 QUICK_FRAMES, QUICK_ROWS = 10, 250
 """Frames and history rows of a --quick run: painting and looking would otherwise take longer than solving."""
 
-PARTICLE_STEPS_PER_S = 8e6
-"""What `--check` assumes for its estimate: measured for quadratic B-splines on two cores; see README."""
+PARTICLE_STEPS_PER_S = 13e6
+"""What `--check` assumes for its estimate: quadratic B-splines on two cores beside the painter; see docs/speed.md."""
 
 
 def parser() -> argparse.ArgumentParser:
@@ -74,16 +75,14 @@ def build(options: argparse.Namespace) -> Scene:
 def describe(scene: Scene) -> str:
     """What would be run, as `--check` prints it."""
     count = sum(len(body.x) for body in scene.particles())
-    nodes = 1
-    for a, b in zip(scene.domain.lower, scene.domain.upper, strict=True):
-        nodes *= round((b - a) / scene.domain.dx) + 7
-    memory = (count * BYTES_PER_PARTICLE + nodes * BYTES_PER_NODE) / 1e6
+    nodes = math.prod(scene.domain.node_counts)
+    memory = (memory_of_particles(scene, count) + memory_of_nodes(scene)) / 1e6
     seconds = count * scene.steps / PARTICLE_STEPS_PER_S
     rows = (
         ("scene", scene.title),
         ("particles", f"{count}"),
         ("grid nodes", f"{nodes} ({scene.domain.grid}), dx = {1e3 * scene.domain.dx:g} mm"),
-        ("memory", f"about {memory:.0f} MB"),
+        ("memory", f"about {memory:.0f} MB of fields"),
         ("scheme", f"{scene.order}, {type(scene.shape).__name__}, {type(scene.transfer).__name__}"),
         ("dt", f"{scene.dt:.4g} s (mass scaling by time_scale = {scene.time_scale:g})"),
         *expectation(scene),

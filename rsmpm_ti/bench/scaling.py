@@ -58,14 +58,14 @@ def memory(names: tuple[str, ...]) -> str:
         scene = load_scene(name)
         sim = Simulation(scene, scene.particles())
         count = sim.particles.count
-        parts = [_bytes(part) / count for part in (sim.particles, sim.events, sim.nodes)]
+        parts = [bytes_of(part) / count for part in (sim.particles, sim.events, sim.nodes)]
         lines.append(
             f"{name:<10}{count:>10}" + "".join(f"{b:>{w}.0f}" for b, w in zip(parts, (18, 10, 10), strict=True))
         )
     return "\n".join(lines)
 
 
-def _bytes(owner) -> int:
+def bytes_of(owner) -> int:
     """Of all distinct Taichi fields that an object holds."""
     import taichi as ti
 

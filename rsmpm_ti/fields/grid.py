@@ -1,12 +1,8 @@
 """Geometry of the background grid."""
 
-import numpy as np
 import taichi as ti
 
-from rsmpm_ti.spec.scene import Scene
-
-MARGIN = 3
-"""Cells of empty grid around the domain, so that no stencil leaves the arrays."""
+from rsmpm_ti.spec.scene import MARGIN, Scene
 
 NO_WALL = -(10**6)
 """Wall index of an axis without a wall."""
@@ -19,9 +15,8 @@ class Grid:
     def __init__(self, scene: Scene):
         domain, dim = scene.domain, scene.dim
         self.dim, self.dx, self.inv_dx = dim, domain.dx, 1.0 / domain.dx
-        cells = np.ceil((np.array(domain.upper) - np.array(domain.lower)) / domain.dx - 1e-6).astype(int)
         beyond = MARGIN + domain.room
-        self.nodes = tuple(int(c) + 2 * beyond + 1 for c in cells)
+        self.nodes = domain.node_counts
         self.origin = tuple(float(a) - beyond * domain.dx for a in domain.lower)
         lower, upper = [NO_WALL] * dim, [-NO_WALL] * dim
         for boundary in scene.loading.boundaries:

@@ -40,6 +40,9 @@ MIN_DX_FRACTION = 1e-9
 
 TimeScale = Annotated[float, Interval(ge=1.0, le=MAX_TIME_SCALE)] | Literal["auto"]
 
+MARGIN = 3
+"""Cells of empty grid around the domain, so that no stencil leaves the arrays."""
+
 GROWTH = 4
 """Lengths of a domain's longest edge by which it may grow on every side: each asks for pointers to empty blocks."""
 
@@ -91,6 +94,12 @@ class Domain:
         while room and math.prod(edge + 2.0 * room + 10.0 for edge in edges) > MAX_COUNT:
             room //= 2
         return room
+
+    @property
+    def node_counts(self) -> tuple[int, ...]:
+        """Nodes of the background grid along each axis, those around the domain included."""
+        edges = ((b - a) / self.dx for a, b in zip(self.lower, self.upper, strict=True))
+        return tuple(math.ceil(edge - 1e-6) + 2 * (MARGIN + self.room) + 1 for edge in edges)
 
     @property
     def farthest(self) -> float:
