@@ -21,9 +21,6 @@ from rsmpm_ti.spec.loader import available
 ROOT = Path(__file__).resolve().parent.parent
 PAGES = [ROOT / "README.md", ROOT / "CONTRIBUTING.md", *sorted((ROOT / "docs").glob("*.md"))]
 
-COMING = {"docs/outputs.md"}
-"""Made from the tables of the package, by another change."""
-
 README_BYTES, MOVING_BYTES = 9000, 2_000_000
 
 COARSE = {
@@ -99,7 +96,7 @@ def test_links_lead_somewhere(page):
     for link in re.findall(r"\]\(([^)\s]+)\)", text):
         path, _, anchor = link.partition("#")
         target = page if not path else (page.parent / path).resolve()
-        if "://" in link or (not target.exists() and target.relative_to(ROOT).as_posix() in COMING):
+        if "://" in link:
             continue
         if not target.exists() or (anchor and anchor not in anchors(target)):
             broken.append(link)
@@ -114,7 +111,7 @@ def anchors(page: Path) -> set[str]:
 @each_page
 def test_files_that_are_named_are_there(page):
     named = re.findall(r"(?:rsmpm_ti|tests|docs|scenes|\.ci)/[\w/]*\w+(?:\.\w+)?", page.read_text(encoding="utf-8"))
-    assert sorted({path for path in named if not (ROOT / path).exists()} - COMING) == []
+    assert sorted({path for path in named if not (ROOT / path).exists()}) == []
 
 
 def test_every_page_is_reached_from_readme():
@@ -301,13 +298,6 @@ def test_recipes_make_one_scene_that_breaks(folder):
     assert result.summary["energy_balance_error"] < 0.02
 
 
-def waits_for(name: str):
-    """For a seam that another change brings; its recipe is run as soon as it is there."""
-    owner, _, attribute = name.rpartition(".")
-    return pytest.mark.skipif(not hasattr(importlib.import_module(owner), attribute), reason=f"{name} is to come")
-
-
-@waits_for("rsmpm_ti.rock.after_failure.AfterFailure")
 def test_recipe_of_a_law_remembers(folder):
     left = run_block(folder, recipe("Law after failure"))
     state = left["result"].snapshot
@@ -315,19 +305,16 @@ def test_recipe_of_a_law_remembers(folder):
     assert failed.any() and (state.history["age"][failed] > 0.0).all() and (state.history["age"][~failed] == 0.0).all()
 
 
-@waits_for("rsmpm_ti.Observer")
 def test_recipe_of_an_observer_sees_the_crack_go_down(folder):
     depths = run_block(folder, recipe("Observer"))["deepest"].depths
     assert len(depths) == 11 and depths == sorted(depths, reverse=True) and depths[-1] < 0.045 < depths[0]
 
 
-@waits_for("rsmpm_ti.Column")
 def test_recipe_of_a_column_is_in_the_history(folder):
     speed = run_block(folder, recipe("History column"))["result"].history["fastest_m_s"]
     assert (speed > 2.4e-3).all()  # no slower than the platens
 
 
-@waits_for("rsmpm_ti.LoadCell")
 def test_recipe_of_a_load_cell_reads_two_rollers_as_one_side(folder):
     (folder / "bending.py").write_text(recipe("Load cell"), encoding="utf-8")
     cell = load_scene("bending.py").loading.load_cell
