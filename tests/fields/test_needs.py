@@ -77,7 +77,7 @@ def test_each_piece_of_physics_adds_its_own_particle_fields_and_no_others(bare, 
     found = fields(sim.particles) | fields(sim.particles.history)
     assert found - fields(bare.particles) == expected and not fields(bare.particles.history)
     assert fields(sim.nodes) == fields(bare.nodes)
-    assert hasattr(sim, "means") == (need == "mean stress")
+    assert hasattr(sim, "nonlocal_sums") == (need == "mean stress")
 
 
 def test_a_plane_scene_stores_two_components_and_four_stresses(bare):
