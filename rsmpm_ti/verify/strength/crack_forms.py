@@ -38,9 +38,9 @@ def root(falling: Callable, low: np.ndarray, high: np.ndarray) -> np.ndarray:
 
 
 def across(closed: np.ndarray, name: str) -> tuple[np.ndarray, np.ndarray]:
-    """(stress, crack strain) across a crack; `shut` [steps]: what the stress would be without it.
+    """(stress, crack strain) across a crack; `closed` [steps]: what the stress would be without it.
 
-    shut - M e = f(e) while it opens, along the secant f(k)/k below its largest opening k, shut below 0.
+    closed - M e = f(e) while it opens, along the secant f(k)/k below its largest crack strain k, closed below 0.
     """
     most = np.maximum.accumulate(closed)
     strain_max = root(lambda e: most - M * e - TENSILE * SHARES[name](e, TENSILE, G_F_I), 0.0 * most, most / M)
@@ -48,8 +48,8 @@ def across(closed: np.ndarray, name: str) -> tuple[np.ndarray, np.ndarray]:
     left = TENSILE * SHARES[name](strain_max, TENSILE, G_F_I)
     with np.errstate(invalid="ignore"):
         secant = np.where(strain_max > 0.0, closed * strain_max / (M * strain_max + left), 0.0)
-    opening = np.clip(secant, 0.0, strain_max)
-    return closed - M * opening, opening
+    crack_strain = np.clip(secant, 0.0, strain_max)
+    return closed - M * crack_strain, crack_strain
 
 
 def pulled(strain: np.ndarray, name: str) -> np.ndarray:
@@ -58,18 +58,18 @@ def pulled(strain: np.ndarray, name: str) -> np.ndarray:
     The first is open whenever the second opens. What they carry depends on each other by Poisson's ratio only.
     """
     xx = yy = np.zeros(len(strain))
-    opening = [0.0 * xx, 0.0 * xx]
+    crack_strain = [0.0 * xx, 0.0 * xx]
     for _ in range(40):  # (LAM/M)^2 of the error is left by each turn
-        yy, opening[1] = across(M * strain[:, 1] + LAM * (strain[:, 0] - opening[0]), name)
-        xx, opening[0] = across(M * strain[:, 0] + LAM * (strain[:, 1] - opening[1]), name)
-    zz = LAM * (strain[:, 0] + strain[:, 1] - opening[0] - opening[1])
+        yy, crack_strain[1] = across(M * strain[:, 1] + LAM * (strain[:, 0] - crack_strain[0]), name)
+        xx, crack_strain[0] = across(M * strain[:, 0] + LAM * (strain[:, 1] - crack_strain[1]), name)
+    zz = LAM * (strain[:, 0] + strain[:, 1] - crack_strain[0] - crack_strain[1])
     return np.stack([xx, yy, zz, 0.0 * xx], axis=1)
 
 
 def friction_limit(slip: np.ndarray, pressure: float, fraction: float, name: str) -> np.ndarray:
     """Largest shear on a closed crack: tau^2 = (c + p tan phi_r)^2 - (c - f tan phi_r)^2, Carol et al. (1997), eq. 3.
 
-    c and f have lost the larger fraction of what opening (`share` is left) and slip have cost them.
+    c and f have lost the larger fraction of what opening (`fraction` is left) and slip have cost them.
     """
     left = np.minimum(fraction, SHARES[name](slip, COHESION, G_F_II))
     c, f = COHESION * left, TENSILE * left
@@ -95,12 +95,12 @@ def sheared(shear: np.ndarray, pressure: float, fraction: float, name: str) -> n
 
 
 def turning(strain: np.ndarray, name: str) -> np.ndarray:
-    """Stress [steps, 4] of rock with a shut crack that turns with the principal axes: the larger principal stress opens
+    """Stress [steps, 4] of rock with a closed crack that turns with the principal axes: the larger principal stress opens
     a new one, at right angles to the old, at the tensile strength."""
     full = strain[:, [0, 2, 2, 1]].reshape(-1, 2, 2)
     value, axes = np.linalg.eigh(full)
-    large, opening = across(M * value[:, 1] + LAM * value[:, 0], name)
-    small, zz = M * value[:, 0] + LAM * (value[:, 1] - opening), LAM * (value.sum(axis=1) - opening)
+    large, crack_strain = across(M * value[:, 1] + LAM * value[:, 0], name)
+    small, zz = M * value[:, 0] + LAM * (value[:, 1] - crack_strain), LAM * (value.sum(axis=1) - crack_strain)
     sigma = np.einsum("nia,na,nja->nij", axes, np.stack([small, large], axis=1), axes)
     return np.stack([sigma[:, 0, 0], sigma[:, 1, 1], zz, sigma[:, 0, 1]], axis=1)
 
