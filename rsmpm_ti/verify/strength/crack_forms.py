@@ -95,8 +95,8 @@ def sheared(shear: np.ndarray, pressure: float, fraction: float, name: str) -> n
 
 
 def turning(strain: np.ndarray, name: str) -> np.ndarray:
-    """Stress [steps, 4] of rock with a closed crack that turns with the principal axes: the larger principal stress opens
-    a new one, at right angles to the old, at the tensile strength."""
+    """Stress [steps, 4] of rock with a closed crack that turns with the principal axes: the larger principal stress
+    opens a new one, at right angles to the old, at the tensile strength."""
     full = strain[:, [0, 2, 2, 1]].reshape(-1, 2, 2)
     value, axes = np.linalg.eigh(full)
     large, crack_strain = across(M * value[:, 1] + LAM * value[:, 0], name)
