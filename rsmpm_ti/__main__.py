@@ -34,7 +34,8 @@ def main(arguments: list[str] | None = None) -> int:
         print(f"rsmpm_ti {__version__}")
         return 0
     if arguments[0] not in COMMANDS:
-        print(f"rsmpm_ti: there is no command {arguments[0]!r}; there are {', '.join(COMMANDS)}", file=sys.stderr)
+        known = f"there are {', '.join(COMMANDS)}; a scene is run by `rsmpm_ti scene NAME`"
+        print(f"rsmpm_ti: there is no command {arguments[0]!r}; {known}", file=sys.stderr)
         return 2
     return importlib.import_module(COMMANDS[arguments[0]][0]).main(arguments[1:])
 

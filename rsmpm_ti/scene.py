@@ -31,7 +31,12 @@ def parser() -> argparse.ArgumentParser:
                    help="a keyword of the scene (flaw_length=15mm) or a field of it (schedule.cfl=0.3)")  # fmt: skip
     p.add_argument("--quick", action="store_true", help="coarse grid and wider slit")
     p.add_argument("--elastic", action="store_true", help="switch failure off")
-    p.add_argument("--frames", type=int, metavar="N", help="number of equally spaced frames")
+    p.add_argument(
+        "--frames",
+        type=int,
+        metavar="N",
+        help="frames at equal fractions of the run, the start besides; up to as many more when failures jump",
+    )
     p.add_argument("--no-movie", action="store_true", help="frames only")
     p.add_argument("--margin", action="store_true", help="also frames of how near the rock is to failure")
     p.add_argument("--painter", choices=("raster", "ggui"), help="ggui needs Vulkan (a GPU, or Mesa's lavapipe)")
@@ -83,7 +88,7 @@ def describe(scene: Scene) -> str:
         ("particles", f"{count}"),
         ("grid nodes", f"{nodes} ({scene.domain.grid}), dx = {1e3 * scene.domain.dx:g} mm"),
         ("memory", f"about {memory:.0f} MB of fields"),
-        ("scheme", f"{scene.order}, {type(scene.shape).__name__}, {type(scene.transfer).__name__}"),
+        ("method", f"{scene.order}, {type(scene.shape).__name__}, {type(scene.transfer).__name__}"),
         ("dt", f"{scene.dt:.4g} s (mass scaling by time_scale = {scene.time_scale:g})"),
         *expectation(scene),
         ("steps", f"{scene.steps} to t = {1e3 * scene.t_end:.4g} ms"),

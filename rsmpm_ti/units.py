@@ -42,9 +42,13 @@ Density = Annotated[float, Unit("kg/m^3")]
 FractureEnergy = Annotated[float, Unit("J/m^2")]
 
 QUANTITY = re.compile(
-    r"([-+]?[\d.]+(?:[eE][-+]?\d+)?)\s*([A-Za-zµ°]{1,20}(?:\^-?\d)?(?:[*/][A-Za-z]{1,20}(?:\^-?\d)?){0,4})"
+    r"([-+]?[\d.]+(?:[eE][-+]?\d+)?)\s*([A-Za-zµ°]{1,20}(?:\^?-?\d)?(?:[*/][A-Za-z]{1,20}(?:\^?-?\d)?){0,4})"
 )
-"""A number and its unit: `15mm`, `2.6 g/cm^3`. Nothing longer goes to pint, which would also compute 9^9^9."""
+"""A number and its unit: `15mm`, `2.6 g/cm^3` or `2.6 g/cm3`. Nothing longer goes to pint, which would also compute
+9^9^9."""
+
+POWER = re.compile(r"([A-Za-z])(-?\d)")
+"""Where pint wants a sign for a power: m2 is m^2."""
 
 
 def quantity(text: str, unit: Unit) -> float | None:
@@ -54,7 +58,7 @@ def quantity(text: str, unit: Unit) -> float | None:
         return None
     registry = _registry()
     try:
-        given = registry.Quantity(float(parts[1]), registry.parse_units(parts[2]))
+        given = registry.Quantity(float(parts[1]), registry.parse_units(POWER.sub(r"\1^\2", parts[2])))
     except (AttributeError, ValueError, ArithmeticError):  # pint: no such unit; float: two points
         return None
     for name in unit.name.split(" or "):

@@ -1,9 +1,12 @@
 """What kernels write for those outside: failure events, the ledger of sums over steps, the report of a survey."""
 
-import numpy as np
 import taichi as ti
 
 from rsmpm_ti.spec.scene import Scene
+
+NEVER = 1e300
+"""A time that does not come [s]. Infinity will not do: where threads take a minimum, Taichi makes the largest number of
+it."""
 
 
 @ti.data_oriented
@@ -14,7 +17,7 @@ class Events:
         self.count, self.by_mode = ti.field(ti.i32, ()), ti.field(ti.i32, 3)
         # when a particle first begins to lose strength: without fracture energy that is the first event
         self.onset = ti.field(ti.f64, ())
-        self.onset[None] = np.inf
+        self.onset[None] = NEVER
         self.names = ("time", "x", "mode", "sigma_1", "sigma_3", "released", "id")
         self.of_history: tuple = ()  # pairs of a column and the variable of the law that it copies
         capacity = scene.rock.after_failure.max_events * capacity if scene.rock.criterion.breaks else 1

@@ -37,7 +37,7 @@ HISTORY = Table(
             name="energy_elastic_J", unit="J", about="elastic energy stored", value=lambda view: view.survey.elastic
         ),
         Column(
-            name="energy_dissipated_J", unit="J", about="lost by failure and viscosity since the start",
+            name="energy_dissipated_J", unit="J", about="dissipated by failure and viscosity since the start",
             value=lambda view: view.survey.dissipated,
         ),
         Column(

@@ -5,6 +5,7 @@ from pathlib import Path
 
 import numpy as np
 
+from rsmpm_ti.records.events import EventTable
 from rsmpm_ti.records.snapshot import Snapshot
 
 
@@ -19,11 +20,16 @@ class Result:
 
     history: np.ndarray
     summary: dict
-    events: object
+    events: EventTable
     fracture: object
     snapshot: Snapshot
     out: Path | None
     stopped: str = ""
+
+    def __repr__(self) -> str:
+        """In a line: the arrays of a run would fill a terminal."""
+        end = self.stopped or "to its end"
+        return f"Result({len(self.history)} rows, {len(self.events)} failures, {end}, out={str(self.out)!r})"
 
 
 @dataclass(frozen=True)

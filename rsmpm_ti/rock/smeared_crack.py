@@ -57,7 +57,7 @@ class Directional(AfterFailure):
         ),
         Variable(name="crack_strain_max", unit="1", per_axis=True, about="the largest crack strains so far"),
         Variable(name="slip", unit="1", about="shear strain by slip, summed"),
-        Variable(name="dissipated", unit="J/m^3", about="energy lost so far, per stress-free volume"),
+        Variable(name="dissipated", unit="J/m^3", about="energy dissipated so far, per stress-free volume"),
         Variable(name="failed", unit="1", whole=True, about="mode by which it opened or slipped by half its strength"),
     )
     dimensions = (2,)

@@ -9,6 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from rsmpm_ti.failure.failure_margin import margins
+from rsmpm_ti.fields.records import NEVER
 from rsmpm_ti.fields.state import Simulation
 from rsmpm_ti.records.events import EventTable
 from rsmpm_ti.records.snapshot import Snapshot
@@ -128,4 +129,5 @@ def read_events(sim: Simulation) -> EventTable:
     columns = {name: getattr(sim.events, name).to_numpy()[:n] for name in sim.events.names}
     order = np.lexsort((columns["id"], columns["time"]))
     columns = {name: column[order] for name, column in columns.items()}
-    return EventTable(**columns, onset=float(sim.events.onset[None]))
+    onset = float(sim.events.onset[None])
+    return EventTable(**columns, onset=onset if onset < NEVER else np.inf)

@@ -4,6 +4,7 @@ import csv
 import json
 import subprocess
 import sys
+from dataclasses import replace
 from pathlib import Path
 
 import imageio.v3 as imageio
@@ -11,7 +12,7 @@ import meshio
 import numpy as np
 import pytest
 
-from rsmpm_ti import load_scene
+from rsmpm_ti import load_scene, simulate
 from rsmpm_ti.errors import UnstableRun
 from rsmpm_ti.records.history_table import HISTORY_COLUMNS
 from rsmpm_ti.records.result import Progress
@@ -204,3 +205,15 @@ def test_a_flying_fragment_is_sorted_before_it_leaves_its_slabs_reach():
     assert result.snapshot.displacement[-1, 0] > 0.01  # it has crossed more than ten cells
     assert farthest <= REACH - scene.shape.width  # the rows by which particles may stray
     assert survey(look.run.sim).sick == 0
+
+
+@pytest.mark.parametrize("threads", [1, 2])
+def test_run_in_which_nothing_fails_knows_no_onset(threads):
+    """Several threads take a minimum of times, and made the largest number that there is of one that never comes."""
+    scene = load_scene("cube", dx=2e-3, flaw_width=6e-3, time_scale=16.0, strain_end=5e-5)
+    result = simulate(replace(scene, schedule=replace(scene.schedule, rows=10)), threads=threads)
+    assert len(result.events) == 0 and result.events.onset == np.inf
+    assert [result.summary[name] for name in ("onset_stress_Pa", "onset_strain", "first_failure_stress_Pa")] == 3 * [
+        None
+    ]
+    assert "0 failures" in repr(result) and "\n" not in repr(result)
