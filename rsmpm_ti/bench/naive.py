@@ -66,7 +66,7 @@ class Naive:
     @ti.kernel
     def p2g(self):
         for p in range(self.count):
-            base, w, dw = self.place(p)
+            base, w, dw = self.position(p)
             s = self.sigma[p] * self.volume[p]
             for a, b in ti.static(ti.ndrange(self.width, self.width)):
                 g = ti.Vector([dw[a, 0] * w[b, 1], w[a, 0] * dw[b, 1]])
@@ -86,7 +86,7 @@ class Naive:
     @ti.kernel
     def g2p(self):
         for p in range(self.count):
-            base, w, dw = self.place(p)
+            base, w, dw = self.position(p)
             v_pic, dv, L = ti.Vector([0.0, 0.0]), ti.Vector([0.0, 0.0]), ti.Matrix([[0.0, 0.0], [0.0, 0.0]])
             for a, b in ti.static(ti.ndrange(self.width, self.width)):
                 g = ti.Vector([dw[a, 0] * w[b, 1], w[a, 0] * dw[b, 1]])

@@ -76,8 +76,8 @@ slow = tuple(replace(p, speed=p.speed * speed / 0.5) for p in platens)
 schedule = replace(scene.schedule, t_end=None, strain_end=strain)
 scene = replace(scene, loading=replace(scene.loading, boundaries=slow), schedule=schedule)
 def look(progress):
-    if round(1000 * progress.share) % 50 == 0:
-        print("MEMORY", progress.share, megabytes(), megabytes(look.run.writer._child.pid), scene.steps)
+    if round(1000 * progress.fraction) % 50 == 0:
+        print("MEMORY", progress.fraction, megabytes(), megabytes(look.run.writer._child.pid), scene.steps)
 settings = module.Settings(progress=look, checkpoint_every=5.0)
 from pathlib import Path
 look.run = module.Run(scene, scene.particles(), module.prepare(scene, Path(sys.argv[1])), settings)
