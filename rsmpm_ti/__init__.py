@@ -15,6 +15,14 @@ NEEDED = "taichi numpy scipy matplotlib cmcrameri PIL fpng meshio rich lazy_load
 """Modules without which no command works; they are those of pyproject.toml but for the movie's."""
 
 
+def _is_command() -> bool:
+    """Whether this process is `python -m rsmpm_ti...` or the console command, and no program that imports us."""
+    words = getattr(sys, "orig_argv", [])
+    module = words[words.index("-m") + 1 :][:1] if "-m" in words else []
+    program = [os.path.splitext(os.path.basename(word))[0] for word in getattr(sys, "argv", [])[:1]]
+    return module[:1] != [] and module[0].split(".")[0] == "rsmpm_ti" or program == ["rsmpm_ti"]
+
+
 def _say_what_is_missing() -> None:
     """Raise ImportError, or end a command by one line, where a package that everything needs is not installed."""
     missing = [name for name in NEEDED if find_spec(name) is None]
@@ -23,7 +31,7 @@ def _say_what_is_missing() -> None:
             f"rsmpm_ti needs {', '.join(missing)}, which {sys.executable} does not have: use .venv/bin/python, which "
             f"`make` builds in a checkout, or `pip install rsmpm_ti`"
         )
-        if sys.argv[0] == "-m":  # what `python -m rsmpm_ti...` has there while it looks for the module
+        if _is_command():
             print(line, file=sys.stderr)
             raise SystemExit(2)
         raise ImportError(line)

@@ -12,8 +12,10 @@ from .records.result import Progress as Progress
 from .records.result import Result as Result
 from .records.snapshot import Snapshot as Snapshot
 from .records.tables import Column as Column
+from .rock.after_failure import AfterFailure as AfterFailure
 from .rock.after_failure import Clipped as Clipped
 from .rock.after_failure import CompressionOnly as CompressionOnly
+from .rock.after_failure import Variable as Variable
 from .rock.after_failure import Void as Void
 from .rock.criteria import MohrCoulomb as MohrCoulomb
 from .rock.criteria import Unbreakable as Unbreakable

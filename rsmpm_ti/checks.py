@@ -11,6 +11,7 @@ import types
 import typing
 from collections.abc import Callable
 
+import numpy as np
 from annotated_types import Interval, Len
 from pydantic import ConfigDict, TypeAdapter, ValidationError
 from pydantic_core import ArgsKwargs, PydanticCustomError, core_schema
@@ -58,12 +59,19 @@ def checked(owner: str) -> Callable[[type[Kind]], type[Kind]]:
     def decorate(kind):
         @functools.wraps(kind.__init__)
         def __init__(self, **values):
+            values = {name: native(value) for name, value in values.items()}
             try:
                 adapter(kind).validator.validate_python(ArgsKwargs((), values), self_instance=self)
             except ValidationError as error:
                 raise refusal(owner, kind, values, error) from None
 
+        def __init_subclass__(cls, **_):
+            raise TypeError(
+                f"{kind.__name__} is final, as an heir would not be checked: wrap it, or write a class apart"
+            )
+
         kind.__init__ = __init__
+        kind.__init_subclass__ = classmethod(__init_subclass__)
         kind.__pydantic_config__ = STRICT
         kind.__get_pydantic_core_schema__ = classmethod(_schema_with_type)
         kind.__get_pydantic_json_schema__ = classmethod(_json_schema_with_type)
@@ -72,6 +80,13 @@ def checked(owner: str) -> Callable[[type[Kind]], type[Kind]]:
         return kind
 
     return decorate
+
+
+def native(value):
+    """Scalars of NumPy as Python's own, also in tuples: pydantic takes a bool of NumPy for a number."""
+    if isinstance(value, tuple):
+        return tuple(map(native, value)) if any(isinstance(v, np.generic) for v in value) else value
+    return value.item() if isinstance(value, np.generic) else value
 
 
 adapter = functools.cache(TypeAdapter)

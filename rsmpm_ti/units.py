@@ -42,7 +42,7 @@ Density = Annotated[float, Unit("kg/m^3")]
 FractureEnergy = Annotated[float, Unit("J/m^2")]
 
 QUANTITY = re.compile(
-    r"([-+]?[\d.]+(?:[eE][-+]?\d+)?)\s*([A-Za-zµ°]{1,20}(?:\^?-?\d)?(?:[*/][A-Za-z]{1,20}(?:\^?-?\d)?){0,4})"
+    r"([-+]?[\d.]+(?:[eE][-+]?\d+)?)\s*([A-Za-zµμ°]{1,20}(?:\^?-?\d)?(?:[*/][A-Za-z]{1,20}(?:\^?-?\d)?){0,4})"
 )
 """A number and its unit: `15mm`, `2.6 g/cm^3` or `2.6 g/cm3`. Nothing longer goes to pint, which would also compute
 9^9^9."""
@@ -51,7 +51,7 @@ POWER = re.compile(r"([A-Za-z])(-?\d)")
 """Where pint wants a sign for a power: m2 is m^2."""
 
 
-def quantity(text: str, unit: Unit) -> float | None:
+def quantity(text: str, unit: Unit, dim: int = 2) -> float | None:
     """A text such as `15 mm` as a number in a unit; None where it is no such text or of another dimension."""
     parts = QUANTITY.fullmatch(text.strip())
     if parts is None:
@@ -61,7 +61,8 @@ def quantity(text: str, unit: Unit) -> float | None:
         given = registry.Quantity(float(parts[1]), registry.parse_units(POWER.sub(r"\1^\2", parts[2])))
     except (AttributeError, ValueError, ArithmeticError):  # pint: no such unit; float: two points
         return None
-    for name in unit.name.split(" or "):
+    names = unit.name.split(" or ")  # of a unit that depends on the scene's dimension: in 2D, in 3D
+    for name in names[dim - 2 :][:1] if len(names) > 1 else names:
         # the units at the root tell also degrees from pure numbers, and rad/s from Hz: both have no dimension
         if registry.get_root_units(given.units)[1] == registry.get_root_units(name)[1]:
             return float(given.to(name).magnitude)

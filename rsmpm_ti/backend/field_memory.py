@@ -92,10 +92,17 @@ def use_field_memory() -> None:
             setattr(_kernels, name, _where_it_can(own, kernel))
 
 
+def _plain(other) -> bool:
+    """Whether it is an array of numbers as this machine has them, or numbers; of anything else Taichi judges."""
+    if isinstance(other, np.ndarray):
+        return other.ndim > 0 and other.dtype.kind in "biuf" and other.dtype.isnative
+    return isinstance(other, (numbers.Real, tuple))
+
+
 def _where_it_can(own, kernel):
     def run(*arguments):
         field, other = arguments[:2] if isinstance(arguments[0], ti.Field) else arguments[1::-1]
-        members = views(field) if isinstance(other, (np.ndarray, numbers.Number, tuple)) else None
+        members = views(field) if _plain(other) else None
         if members is None:
             kernel(*arguments)
         else:

@@ -39,8 +39,9 @@ def evaluate_margins(
     margin: ti.types.ndarray(dtype=ti.f64, ndim=1),
     governs: ti.types.ndarray(dtype=ti.i32, ndim=1),
     damage: ti.types.ndarray(dtype=ti.f64, ndim=1),
+    failed: ti.types.ndarray(dtype=ti.i32, ndim=1),
 ):
-    particles, criterion = sim.particles, sim.rock.criterion
+    particles, criterion, law = sim.particles, sim.rock.criterion, sim.rock.after_failure
     for p in particles.mode:
         if particles.mode[p] == 0:
             load = load_factors(sim, p, extreme_principals(particles.sigma[p]))
@@ -50,18 +51,21 @@ def evaluate_margins(
             if ti.max(tension, shear) > 0.0:
                 governs[p] = ti.select(tension >= shear, 1, 2)  # tension is checked first
         else:
-            margin[p], governs[p], damage[p] = 0.0, particles.mode[p], sim.rock.after_failure.damage(sim, p)
+            margin[p], governs[p], damage[p] = 0.0, particles.mode[p], law.damage(sim, p)
+            failed[p] = law.failed_mode(sim, p)
 
 
-def margins(sim) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Margin to failure, what governs it (0 nothing, 1 tension, 2 shear) and damage, [n] each, as particles lie.
+def margins(sim) -> dict[str, np.ndarray]:
+    """`margin` to failure, what `governs` it (0 nothing, 1 tension, 2 shear), `damage` and `failure_mode`, [n] each, as
+    particles lie.
 
-    1, 0 and 0 everywhere in rock that does not break. See `Snapshot` for what they mean in rock that has failed.
+    1, 0, 0 and 0 everywhere in rock that does not break. See `Snapshot` for what they mean in rock that has failed.
     """
     n = sim.particles.count
     margin, governs, damage = np.ones(n), np.zeros(n, dtype=np.int32), np.zeros(n)
+    failed = np.zeros(n, dtype=np.int32)
     if sim.particles.breaks:
         if sim.is_nonlocal:
             sum_nonlocal(sim)
-        evaluate_margins(sim, margin, governs, damage)
-    return margin, governs, damage
+        evaluate_margins(sim, margin, governs, damage, failed)
+    return {"margin": margin, "governs": governs, "damage": damage, "failure_mode": failed}

@@ -44,7 +44,7 @@ def spread_stress(sim: ti.template(), ticket: int):
 
 @ti.kernel
 def blur(sim: ti.template(), source: ti.template(), target: ti.template(), axis: ti.template()):
-    """Convolution of node sums with the taps along one axis."""
+    """Convolution of node sums with the filter's weights along one axis."""
     reach = ti.static(sim.nonlocal_sums.reach)
     for i in ti.grouped(source):
         total = ti.Vector.zero(float, 6)

@@ -8,9 +8,16 @@ from rsmpm_ti.rock.tensors import extreme_principals, principal_normal
 
 @ti.func
 def record_failure(sim: ti.template(), p, mode, extremes, released, time):
-    particles, events = sim.particles, sim.events
+    events = sim.events
     e = ti.atomic_add(events.count[None], 1)
     events.by_mode[mode] += 1
+    if e < events.capacity:  # a law that makes more than it said is told so at the next survey
+        store_event(sim, e, p, mode, extremes, released, time)
+
+
+@ti.func
+def store_event(sim: ti.template(), e, p, mode, extremes, released, time):
+    particles, events = sim.particles, sim.events
     events.time[e] = time
     events.x[e] = particles.reference[p] + particles.u[p]
     events.sigma_1[e], events.sigma_3[e] = extremes[0], extremes[1]
@@ -86,6 +93,6 @@ def check_failure(sim: ti.template(), p, dt, time, slot):
         dissipated += more
         particles.sigma[p] = sigma
         sim.ledger.released[slot] += ti.cast(particles.volume[p] * dissipated, ti.f64)
-        mode = law.failed_mode(sim, p)
-        if mode != failed:
+        mode = ti.max(0, ti.min(law.failed_mode(sim, p), 2))
+        if mode != failed and mode != 0:
             record_failure(sim, p, mode, extremes, particles.volume[p] * law.released(sim, p, dissipated), time)

@@ -25,6 +25,7 @@ class Events:
             self.normal = ti.Vector.field(scene.dim, real, capacity)  # unit vector across the crack
             self.names += ("normal",)
             self.of_history = ((self.normal, history.crack_normal),)
+        self.capacity = capacity
         self.time, self.sigma_1 = ti.field(ti.f64, capacity), ti.field(real, capacity)
         self.sigma_3, self.released = ti.field(real, capacity), ti.field(real, capacity)
         self.x = ti.Vector.field(scene.dim, real, capacity)

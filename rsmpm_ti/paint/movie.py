@@ -91,7 +91,7 @@ class Movie:
 
 
 def movie_size(width: int, height: int) -> tuple[int, int]:
-    """Width and height of the movie of frames of that size: within LARGEST, never enlarged, even as H.264 wants it."""
+    """Width and height of the movie of such frames: within MAX_FRAME, never enlarged, even numbers for H.264."""
     scale = min(1.0, MAX_FRAME[0] / width, MAX_FRAME[1] / height)
     return 2 * round(width * scale / 2), 2 * round(height * scale / 2)
 

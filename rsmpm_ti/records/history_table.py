@@ -70,5 +70,7 @@ HISTORY_COLUMNS = HISTORY.names
 
 
 def nominal_stress(history: np.ndarray) -> np.ndarray:
-    """Mean of both sides of the load cell [Pa], [rows], compression positive."""
-    return 0.5 * (history["stress_top_Pa"] + history["stress_bottom_Pa"])
+    """Mean of both sides of the load cell [Pa], [rows], compression positive; of a cell that reads one, that side."""
+    top, bottom = history["stress_top_Pa"], history["stress_bottom_Pa"]
+    both = 0.5 * (top + bottom)
+    return np.where(np.isnan(both), np.where(np.isnan(top), bottom, top), both)

@@ -11,6 +11,7 @@ import numpy as np
 import taichi as ti
 
 from rsmpm_ti.checks import NotNegative, checked
+from rsmpm_ti.errors import refuse
 from rsmpm_ti.rock.tensors import isotropic
 from rsmpm_ti.units import Pressure
 
@@ -27,6 +28,26 @@ class Variable:
     about: str  # in a few words
     per_axis: bool = False  # a vector with a number for each axis of the scene
     whole: bool = False  # a whole number
+
+
+RESERVED = {"variables", "components", "real_fields", "whole_fields", "has_normal", "to_numpy"}
+"""Names that `fields.particles.LawHistory` has for itself."""
+
+
+def check_law(law) -> None:
+    """Raise SceneError for a law whose history cannot be kept."""
+    owner, variables = type(law).__name__, law.history
+    if not isinstance(variables, tuple) or not all(isinstance(v, Variable) for v in variables):
+        raise refuse(f"{owner}.history", variables, "a tuple of Variable(...)", "a tuple of one ends in a comma")
+    names = [v.name for v in variables]
+    for name in names:
+        if not name.isidentifier() or name.startswith("_") or name in RESERVED or names.count(name) > 1:
+            remedy = f"{', '.join(sorted(RESERVED))} are taken"
+            raise refuse(f"{owner}.history", name, "a name of letters, digits and _ that no other variable has", remedy)
+    needed = {v.name for v in variables if v.per_axis}
+    if law.oriented and not {"crack_normal", "crack_strain_max"} <= needed:
+        allowed = "with crack_normal and crack_strain_max, both per_axis, since the law is oriented"
+        raise refuse(f"{owner}.history", tuple(names), allowed)
 
 
 class AfterFailure:
@@ -55,7 +76,7 @@ class AfterFailure:
 
     @ti.func
     def begin(self, sim: ti.template(), p, mode, normal):
-        """A particle fails by `mode`; `normal`: unit vector along its larger in-plane principal stress.
+        """A particle fails by `mode`; `normal`: unit vector along its larger in-plane principal stress, 0 in 3D.
 
         Sets the history. Returns the energy that is lost at once.
         """
@@ -99,7 +120,7 @@ class AfterFailure:
 
     @ti.func
     def released(self, sim: ti.template(), p, dissipated):
-        """Energy that an event reports; lost: in the step of the event."""
+        """Energy that an event reports; dissipated: in the step of the event."""
         return dissipated
 
 

@@ -43,7 +43,7 @@ def take(drive, history, progress: dict, identity: dict) -> dict[str, np.ndarray
     sim = drive.sim
     arrays = particle_arrays(sim)
     arrays |= {f"ledger_{name}": getattr(sim.ledger, name).to_numpy() for name in LEDGER}
-    count = sim.events.count[None]
+    count = min(sim.events.count[None], sim.events.capacity)
     arrays |= {f"event_{name}": getattr(sim.events, name).to_numpy()[:count] for name in _event_columns(sim)}
     arrays["event_by_mode"] = sim.events.by_mode.to_numpy()
     arrays["event_onset"] = np.array(sim.events.onset[None])
@@ -82,6 +82,13 @@ def restore(arrays: dict[str, np.ndarray], drive, history) -> dict:
     return json.loads(str(arrays["text"]))["progress"]
 
 
+def _native(value):
+    """A scalar of NumPy as Python's own."""
+    if isinstance(value, np.generic):
+        return value.item()
+    raise TypeError(f"{type(value).__name__} is none of them")
+
+
 def observer_arrays(watches: list[Watch]) -> tuple[list[dict], dict[str, np.ndarray]]:
     """What observers remember: a plain part for each, and arrays by names that say whose they are."""
     parts: list[dict] = []
@@ -91,7 +98,7 @@ def observer_arrays(watches: list[Watch]) -> tuple[list[dict], dict[str, np.ndar
         found = {name: value for name, value in state["own"].items() if isinstance(value, np.ndarray)}
         rest = {name: value for name, value in state["own"].items() if name not in found}
         try:
-            json.dumps(rest, allow_nan=True)
+            rest = json.loads(json.dumps(rest, allow_nan=True, default=_native))
             problem = next((name for name in found if not isinstance(name, str) or found[name].dtype.hasobject), None)
         except (TypeError, ValueError) as error:
             problem = error

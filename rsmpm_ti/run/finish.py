@@ -1,6 +1,5 @@
 """The end of a run: what broke is measured, numbers are summed up, and everything that can be written is written."""
 
-import contextlib
 import time
 
 from rsmpm_ti.analysis.fracture import Fracture, measure_fracture
@@ -43,9 +42,10 @@ def _writes(run, view, fracture: Fracture, failure: Exception | None) -> list:
         run.painting_s += time.perf_counter() - start
 
     def checkpoint() -> None:
-        told = (ObserverError,) if failure is not None else ()  # of that already
-        with contextlib.suppress(*told):
+        try:
             timed(run.checkpoint)
+        except ObserverError as error:  # by what it remembers; the rest is still written
+            run.late_failure = error
 
     writes = [
         lambda: write_history(run.out / "history.csv", view.history),

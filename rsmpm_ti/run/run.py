@@ -46,7 +46,7 @@ def simulate(
     """
     settings = Settings(
         name=name, precision=precision, arch=arch, threads=threads, deterministic=deterministic,
-        checkpoint_every=checkpoint_every, progress=progress, columns=tuple(columns), observers=tuple(observers),
+        checkpoint_every=checkpoint_every, progress=progress, columns=_tuple(columns), observers=_tuple(observers),
     )  # fmt: skip
     settings.check(scene)
     if resume and out is None:
@@ -59,6 +59,11 @@ def simulate(
 
         kept = read(Path(out), settings.identity(scene))
     return Run(scene, seeds, prepare(scene, out, keep=kept is not None), settings, kept).go()
+
+
+def _tuple(entries):
+    """A list as a tuple; what is neither is refused by its name."""
+    return tuple(entries) if isinstance(entries, list) else entries
 
 
 class Run:
@@ -136,7 +141,9 @@ class Run:
                     failure.__cause__, stopped = error.__cause__, str(failure)
                 except (UnstableRun, SceneError) as error:
                     stopped, failure = str(error), error
+            self.late_failure: ObserverError | None = None
             result = finish(self, stopped, failure)
+            failure = failure or self.late_failure
         except BaseException:
             self._abandon()
             raise

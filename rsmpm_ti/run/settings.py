@@ -45,6 +45,9 @@ class Settings:
             )
         if not (math.isfinite(self.checkpoint_every) and self.checkpoint_every >= 0.0):
             raise refuse("checkpoint_every", self.checkpoint_every, "a number of seconds, 0 for every history row")
+        for name in ("columns", "observers"):
+            if not isinstance(getattr(self, name), tuple):
+                raise refuse(name, getattr(self, name), "a tuple", "a tuple of one ends in a comma")
         check_columns(scene, self.columns)
         if self.observers:
             from rsmpm_ti.solver.observer import Watch

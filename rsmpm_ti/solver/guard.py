@@ -31,6 +31,12 @@ def guard(sim: Simulation, clock: Clock, survey: Survey) -> None:
         reference = sim.particles.reference.to_numpy()[np.flatnonzero(sim.particles.id.to_numpy() == survey.sick_id)[0]]
         where = f" (one started at {np.array2string(1e3 * reference, precision=3)} mm)"
     at = f"at step {clock.step}, t = {clock.time:.6g} s"
+    if survey.failed_tension + survey.failed_shear > sim.events.capacity:
+        law = sim.rock.after_failure
+        raise UnstableRun(
+            f"{type(law).__name__} made more than max_events = {law.max_events} events of a particle {at}; likely "
+            f"cause: its failed_mode changes back, or max_events is too small"
+        )
     if survey.sick:
         raise UnstableRun(
             f"{survey.sick} particles are not finite or left the domain {at}{where}; likely cause: a time step too "

@@ -38,6 +38,8 @@ class Watch:
         number = isinstance(every, int | float) and math.isfinite(every) and 0.0 <= every <= 1.0
         if not number:
             raise refuse(f"{self.name}.every", every, "a fraction of the run in (0, 1], or 0 for every history row")
+        if isinstance(observer, type):
+            raise refuse("observers", observer, "objects, not classes", f"write {observer.__name__}()")
         for name in ("see", "state", "resume"):
             if not callable(getattr(observer, name, None)):
                 raise refuse("observers", observer, "objects with every, see, state and resume", f"{name} is missing")

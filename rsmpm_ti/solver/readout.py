@@ -23,6 +23,7 @@ class Readout:
     fields: dict[str, np.ndarray]  # of `Particles`, by name, those that the rock has; and what `margins` returns
     failed: tuple[np.ndarray, np.ndarray]  # id and time [s] of the failure events, in no order
     history: dict[str, np.ndarray]  # what the law after failure remembers, by name
+    oriented: bool  # whether that has the normal of a crack
 
     def snapshot(self) -> Snapshot:
         """The particles in the order of their ids, without those that were dropped."""
@@ -44,7 +45,7 @@ class Readout:
         sigma_1, sigma_3 = extreme_stresses(packed)
         history = {name: values.take(order, axis=0) for name, values in self.history.items()}
         crack_angle = np.full(n, np.nan)
-        if "crack_normal" in history:
+        if self.oriented:
             begun = column("mode", np.int8) > 0
             across, up = history["crack_normal"][begun, :2].astype(np.float64).T
             crack_angle[begun] = np.degrees(np.arctan2(up, across)) % 180.0
@@ -59,7 +60,7 @@ class Readout:
             sigma_3=sigma_3,
             volume=column("volume") * column("J"),
             strength=column("strength") if "strength" in fields else np.ones(n),
-            failure_mode=self._modes(order),
+            failure_mode=column("failure_mode", np.int8),
             failure_time=self._failure_times()[ids[order]],
             margin=column("margin"),
             governs=column("governs", np.int8),
@@ -68,11 +69,6 @@ class Readout:
             crack_angle=crack_angle,
             history=history,
         )
-
-    def _modes(self, order: np.ndarray) -> np.ndarray:
-        """Rock with a direction may have begun to fail, which is its `mode`, and not have `failed`."""
-        modes = self.history.get("failed", self.fields.get("mode", np.zeros(len(self.fields["id"]))))
-        return modes[order].astype(np.int8)
 
     def _failure_times(self) -> np.ndarray:
         """By id; of a particle that failed twice, the later."""
@@ -89,18 +85,18 @@ def read_out(sim: Simulation, time: float) -> Readout:
     names = ["id", "reference", "u", "v", "sigma", "volume", "J"]
     names += ["mode"] * particles.breaks + ["strength"] * particles.varied
     fields = {name: getattr(particles, name).to_numpy() for name in names}
-    margin, governs, damage = margins(sim)
-    fields |= {"margin": margin, "governs": governs, "damage": damage}
+    fields |= margins(sim)
     history = particles.history.to_numpy()
     aperture = sim.rock.after_failure.aperture(history, sim.band) if particles.breaks else None
     if aperture is not None:
         fields["aperture"] = aperture
-    count = events.count[None]
+    count = min(events.count[None], events.capacity)
     return Readout(
         time=time,
         fields=fields,
         failed=(events.id.to_numpy()[:count], events.time.to_numpy()[:count]),
         history=history,
+        oriented=particles.breaks and sim.rock.after_failure.oriented,
     )
 
 
@@ -125,7 +121,7 @@ def extreme_stresses(packed: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
 
 def read_events(sim: Simulation) -> EventTable:
     """All events so far, sorted by time, then particle id, so that threads do not show."""
-    n = sim.events.count[None]
+    n = min(sim.events.count[None], sim.events.capacity)
     columns = {name: getattr(sim.events, name).to_numpy()[:n] for name in sim.events.names}
     order = np.lexsort((columns["id"], columns["time"]))
     columns = {name: column[order] for name, column in columns.items()}

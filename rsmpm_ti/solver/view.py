@@ -23,7 +23,7 @@ class View:
     """
 
     def __init__(self, sim: Simulation, clock: Clock, survey: Survey, history, out: Path | None = None):
-        self.sim, self.survey, self.out, self._history = sim, survey, out, history
+        self.sim, self.survey, self.out, self._history, self._clock = sim, survey, out, history, clock
         self.time, self.strain, self.step, self.dt, self.fraction = (
             clock.time, clock.strain, clock.step, clock.dt, clock.fraction
         )  # fmt: skip
@@ -44,6 +44,9 @@ class View:
 
     @cached_property
     def readout(self) -> Readout:
+        """Raises RuntimeError once the run has gone on: a view that was kept knows no particles any more."""
+        if self._clock.step != self.step:
+            raise RuntimeError(f"this view is of step {self.step}, and the run has gone on: take the snapshot in see()")
         return read_out(self.sim, self.time)
 
     @cached_property

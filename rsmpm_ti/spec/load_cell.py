@@ -60,8 +60,10 @@ class Load:
 
     @property
     def stress(self) -> float:
-        """Mean of both sides [Pa]."""
-        return 0.5 * (self.stress_upper + self.stress_lower)
+        """Mean of the sides that are read [Pa]."""
+        both = 0.5 * (self.stress_upper + self.stress_lower)
+        alone = self.stress_lower if math.isnan(self.stress_upper) else self.stress_upper
+        return alone if math.isnan(both) else both
 
 
 NO_LOAD = Load(math.nan, math.nan, math.nan, math.nan)
@@ -105,8 +107,7 @@ class LoadCell:
             found = getattr(self, name)
             if found is not None:
                 return found
-            along = pair is not None and pair[0].axis == axis
-            boundaries = enumerate(loading.boundaries if along else ())
+            boundaries = enumerate(loading.boundaries)
             return tuple(k for k, b in boundaries if isinstance(b, Platen) and (b.axis, b.side) == (axis, name))
 
         width = loading.width if self.width is None else self.width

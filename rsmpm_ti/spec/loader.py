@@ -78,7 +78,7 @@ def load_scene(name: str, *, quick: bool = False, settings: dict[str, object] | 
             scene = _call(function, path, (quick_keywords if quick else {}) | overrides, settings)
     for key, text in fields.items():
         with _naming({key: text}):
-            scene = _with_field(scene, Scene, key, key.split("."), text)
+            scene = _with_field(scene, Scene, key, key.split("."), text, scene.dim)
     return scene
 
 
@@ -189,7 +189,7 @@ def family_of(kind: type):
     return next((part for part in fields if kind in members(part) and len(members(part)) > 1), kind)
 
 
-def _readings(text, wanted):
+def _readings(text, wanted, dim: int):
     """What a text may mean, the narrowest first; what is no text means itself."""
     if not isinstance(text, str):
         yield text
@@ -199,7 +199,7 @@ def _readings(text, wanted):
     unit = unit_of(wanted)
 
     def number(part: str) -> float:
-        found = quantity(part, unit) if unit else None
+        found = quantity(part, unit, dim) if unit else None
         return float(part) if found is None else found
 
     for read in (number, int, lambda t: tuple(number(part) for part in t.strip("()").split(",") if part.strip())):
@@ -210,7 +210,7 @@ def _readings(text, wanted):
     yield text
 
 
-def _parse(key: str, text, wanted):
+def _parse(key: str, text, wanted, dim: int = 2):
     """A text as what an annotation says: a number, with a unit or without, a word, numbers separated by commas, or the
     name of a class."""
     near, refused = None, f"{short(key)}={short(text) if isinstance(text, str) else shown(text)} is refused: it"
@@ -218,7 +218,7 @@ def _parse(key: str, text, wanted):
         adapter = TypeAdapter(tuple[wanted], config=STRICT)
     except PydanticUserError:
         raise SceneError(f"{refused} is annotated {shown(wanted)}, which no value can be held to") from None
-    for value in _readings(text, wanted):
+    for value in _readings(text, wanted, dim):
         try:
             return adapter.validate_python((value,))[0]
         except ValidationError as error:
@@ -234,25 +234,25 @@ OUT_OF_RANGE = {"greater_than", "greater_than_equal", "less_than", "less_than_eq
 """What pydantic calls a number that is one, but not of those that are allowed."""
 
 
-def _with_field(owner, kind, key: str, path: list[str], text):
+def _with_field(owner, kind, key: str, path: list[str], text, dim: int):
     """A copy of frozen data with one nested value replaced; `kind` is the annotation of `owner`, bodies.0.seeding
-    indexes a tuple."""
+    indexes a tuple; dim: of the scene, by which a unit is m or m^2."""
     if not path:
-        return _parse(key, text, kind)
+        return _parse(key, text, kind, dim)
     name, rest = path[0], path[1:]
     if isinstance(owner, tuple):
         if name not in map(str, range(len(owner))):
             raise SceneError(f"{short(key)}: {shown(name)} is no index; there are {len(owner)} entries, counted from 0")
         k = int(name)
         entries = next(typing.get_args(part) for part in within(kind) if typing.get_origin(part) is tuple)
-        entry = _with_field(owner[k], entries[0 if entries[-1] is Ellipsis else k], key, rest, text)
+        entry = _with_field(owner[k], entries[0 if entries[-1] is Ellipsis else k], key, rest, text, dim)
         return (*owner[:k], entry, *owner[k + 1 :])
     if not dataclasses.is_dataclass(owner) or isinstance(owner, type):
         raise SceneError(f"{short(key)}: {shown(name)} is no field of a {type(owner).__name__}")
     names = [f.name for f in dataclasses.fields(owner)]
     if name not in names:
         raise SceneError(_unknown(name, names, type(owner).__name__))
-    value = _with_field(getattr(owner, name), annotations(type(owner))[name], key, rest, text)
+    value = _with_field(getattr(owner, name), annotations(type(owner))[name], key, rest, text, dim)
     try:
         return replace(owner, **{name: value})
     except SceneError:

@@ -81,7 +81,7 @@ class Estimate:
         return max(added / self.stress, kinetic)
 
     def largest(self, tolerance: float) -> float:
-        """The largest time scale whose error is at most `tolerance`, in [1, LARGEST]: 1 where even that errs more."""
+        """The largest time scale with an error of at most `tolerance`, in [1, MAX_TIME_SCALE]; 1 if that errs more."""
         most = MAX_TIME_SCALE
         if isinstance(self.start, Ramp):
             most = min(most, self.start.time * self.wave_speed / (MIN_TRANSITS * self.height))

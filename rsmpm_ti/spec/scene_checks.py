@@ -3,6 +3,7 @@
 Everything is arithmetic on the parts; nothing is seeded. Each check raises SceneError, in one line.
 """
 
+import itertools
 import math
 import os
 
@@ -11,6 +12,7 @@ import numpy as np
 from rsmpm_ti.errors import SceneError, refuse, shown
 from rsmpm_ti.method.shape import Gimp
 from rsmpm_ti.method.time_step import MAX_COUNT
+from rsmpm_ti.rock.after_failure import check_law
 from rsmpm_ti.rock.tensors import PACKED_LENGTH
 from rsmpm_ti.spec.loading_start import Affine, Press, Ramp
 from rsmpm_ti.spec.mass_scaling import MIN_TRANSITS
@@ -157,6 +159,8 @@ def _check_load_cell(scene) -> None:
         raise refuse("cell.axis", given.axis, f"below the dimension {scene.dim}")
     if cell is None and (given.lower is not None or given.upper is not None):
         raise refuse("cell.axis", None, "given where no two platens face each other", "say along which axis it reads")
+    if given.axis is not None and not cell.lower and not cell.upper:
+        raise refuse("cell.axis", given.axis, "an axis along which platens press", "name boundaries by lower, upper")
     for side in ("lower", "upper"):
         for k in getattr(given, side) or ():
             boundaries = scene.loading.boundaries
@@ -178,9 +182,8 @@ def _check_load_cell(scene) -> None:
 
 
 def _near_rock(scene, point: tuple[float, ...]) -> bool:
-    """Whether a point, or one a cell from it along an axis, lies in a body; surfaces belong to no body."""
-    steps = scene.domain.dx * np.eye(scene.dim)
-    around = np.array(point) + np.concatenate([np.zeros((1, scene.dim)), steps, -steps])
+    """Whether a point, or one a cell from it along axes or between them, lies in a body; surfaces belong to no body."""
+    around = np.array(point) + scene.domain.dx * np.array(list(itertools.product((-1.0, 0.0, 1.0), repeat=scene.dim)))
     return any(body.region.contains(around).any() for body in scene.bodies)
 
 
@@ -205,7 +208,8 @@ def check_motion(scene) -> None:
 def check_cracks(rock, shape, dim: int, dx: float) -> None:
     """Refuse rock that this grid (shape functions, dimension, cell size dx [m]) cannot break as its laws say."""
     law = rock.after_failure
-    if dim not in law.dimensions:
+    check_law(law)
+    if dim not in law.dimensions or (law.oriented and dim != 2):
         raise refuse("rock.after_failure", law, f"isotropic in {dim}D", "use CompressionOnly, Void or Clipped")
     if rock.nonlocal_mean.acts:
         if not law.oriented:

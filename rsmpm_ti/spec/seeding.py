@@ -81,7 +81,7 @@ def _fractions(region, x: np.ndarray, spacing: float) -> tuple[np.ndarray, np.nd
 
 
 def _merge_slivers(fraction: np.ndarray, moment: np.ndarray, x: np.ndarray, counts: list[int]) -> None:
-    """Give the material of sub-cells below LEAST_SHARE to the fullest neighbour along an axis; in place."""
+    """Give the material of sub-cells below MIN_FRACTION to the fullest neighbour along an axis; in place."""
     slivers = np.flatnonzero((fraction > 0.0) & (fraction < MIN_FRACTION))
     position = np.stack(np.unravel_index(slivers, counts, order="F"), axis=1)
     best, fullest = np.full(len(slivers), -1), np.full(len(slivers), MIN_FRACTION)

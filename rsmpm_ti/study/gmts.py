@@ -104,7 +104,8 @@ def initiation(K_I: float, K_II: float, T: float, r_c: float) -> tuple[float, fl
 def critical_distance(sif: tuple[float, float, float], a: float, factor: float) -> float:
     """r_c, in the unit of a, at which the largest tangential stress is `factor` times the nominal stress.
 
-    sif: N_I, N_II, T*. NaN unless that stress falls from above `factor` to below it between LEAST a and MOST a.
+    sif: N_I, N_II, T*. NaN unless that stress falls from above `factor` to below it between MIN_DISTANCE and
+    MAX_DISTANCE, in a.
     """
 
     def excess(fraction: float) -> float:

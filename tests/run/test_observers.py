@@ -167,3 +167,53 @@ def test_without_a_folder_observers_look_too():
     observer = Counts(0.5)
     simulate(scene(), threads=1, observers=(observer,))
     assert len(observer.seen) == 3 and observer.seen[0] == (0, 0.0, 0)
+
+
+class Keeps(Observer):
+    """Keeps what it must not, or cannot say what it remembers."""
+
+    every = 0.5
+
+    def __init__(self, state: dict | Exception):
+        self.remembered, self.views = state, []
+
+    def see(self, view) -> None:
+        self.views.append(view)
+
+    def state(self) -> dict:
+        if isinstance(self.remembered, Exception):
+            raise self.remembered
+        return self.remembered
+
+
+@pytest.mark.parametrize("state", [ValueError("I forgot"), {"a": object()}])
+def test_a_state_that_fails_at_the_end_costs_no_file_and_no_result(state, tmp_path):
+    with pytest.raises(ObserverError, match="observer Keeps") as failed:
+        simulate(scene(), out=tmp_path, observers=(Keeps(state),), threads=1)
+    assert len(failed.value.result.history) >= ROWS
+    assert {"history.csv", "events.csv", "summary.json", "summary.png"} <= {path.name for path in tmp_path.iterdir()}
+
+
+def test_numbers_of_numpy_are_a_state(tmp_path):
+    observer = Keeps({"n": np.int64(3)})
+    simulate(scene(), out=tmp_path, observers=(observer,), threads=1)
+    parts, _ = observer_arrays([Watch(observer)])
+    assert parts[0]["own"] == {"n": 3} and type(parts[0]["own"]["n"]) is int
+
+
+def test_a_view_that_was_kept_shows_no_later_state_as_its_own():
+    observer = Keeps({})
+    simulate(scene(), observers=(observer,), threads=1)
+    first, *_, last = observer.views
+    assert first.time < last.time
+    with pytest.raises(RuntimeError, match="the run has gone on"):
+        _ = first.snapshot
+
+
+def test_what_is_no_tuple_of_objects_is_refused():
+    column = Column(name="a", unit="1", about="one", value=lambda view: 1.0)
+    for more, words in (({"columns": column}, "a tuple"), ({"observers": Keeps({})}, "a tuple")):
+        with pytest.raises(SceneError, match=words):
+            simulate(scene(), **more)
+    with pytest.raises(SceneError, match=r"not classes; write Observer\(\)"):
+        simulate(scene(), observers=(Observer,))

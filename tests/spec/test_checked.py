@@ -11,6 +11,7 @@ import pytest
 from annotated_types import Interval
 from small_scene import BLOCK, body, make, refusal
 
+from rsmpm_ti import SceneError, Schedule
 from rsmpm_ti.checks import KNOWN, ByType, Remedy, checked
 from rsmpm_ti.rock.after_failure import Void
 from rsmpm_ti.rock.criteria import MohrCoulomb, Unbreakable
@@ -139,3 +140,16 @@ def test_other_objects_will_not_do(stranger):
 def test_class_from_outside_is_not_one_that_a_record_may_name():
     assert "Layer" not in KNOWN and "Wedge" not in KNOWN
     assert "force_field" in refusal(lambda: Loading(force_field=Wedge()))
+
+
+def test_heir_of_scene_data_is_refused_since_nobody_would_check_it():
+    with pytest.raises(TypeError, match="Hooke is final"):
+        type("Stiffer", (Hooke,), {})
+
+
+def test_scalars_of_numpy_are_pythons_own():
+    rock = Hooke(E=np.float32(17e9), nu=np.float64(0.25))
+    assert (type(rock.E), type(rock.nu)) == (float, float)
+    assert Schedule(t_end=1.0, rows=np.int64(5)).rows == 5
+    with pytest.raises(SceneError, match="elasticity.E = True is refused"):
+        Hooke(E=np.True_, nu=0.25)

@@ -50,7 +50,7 @@ def test_a_cell_of_ones_own_reads_what_it_says():
     cell = LoadCell(axis=1, lower=(), upper=(1, 4), width=2.0)
     load = Loading(boundaries=SUPPORTS, width=0.05, cell=cell).load_cell.read(np.full((5, 2), -4.0))
     assert (load.force_upper, load.stress_upper) == (8.0, 4.0)
-    assert np.isnan(load.force_lower) and np.isnan(load.stress)
+    assert np.isnan(load.force_lower) and load.stress == 4.0, "the side that is read"
     assert Loading(boundaries=SUPPORTS, width=0.05, cell=LoadCell(width=0.1)).load_cell.width == 0.1
 
 
@@ -68,6 +68,20 @@ def test_a_cell_of_ones_own_reads_what_it_says():
 def test_a_cell_that_does_not_fit_its_scene_is_refused(cell, words):
 
     assert re.search(words, refusal(lambda: make(loading_cell=cell)))
+
+
+def test_an_axis_alone_takes_its_platens_whether_they_face_each_other_or_not():
+    one = Loading(boundaries=(plate("upper", 0.1),), width=0.05, cell=LoadCell(axis=1)).load_cell
+    assert (one.lower, one.upper) == ((), (0,)) and one.read(np.full((1, 2), -4.0)).stress == pytest.approx(80.0)
+    sides = (*SUPPORTS, plate("lower", 0.0, axis=0), plate("upper", 0.05, axis=0))
+    cell = Loading(boundaries=sides, width=0.05, cell=LoadCell(axis=0)).load_cell
+    assert cell.lower[-1] == len(SUPPORTS) and cell.upper == (len(SUPPORTS) + 1,)
+    assert all(sides[k].axis == 0 and sides[k].side == "lower" for k in cell.lower)
+    assert "an axis along which platens press" in refusal(lambda: make(loading_cell=LoadCell(axis=0)))
+
+
+def test_a_gauge_may_begin_at_a_corner_of_the_specimen():
+    make(loading_cell=LoadCell(gauges=(Gauge(name="g", a=(0.0, 0.0), b=(0.0, 0.04)),)))
 
 
 def test_a_cell_without_an_axis_is_refused():

@@ -6,6 +6,7 @@ import sys
 import pytest
 from small_scene import refusal
 
+from rsmpm_ti.scene import main
 from rsmpm_ti.spec.loader import load_scene
 from rsmpm_ti.units import Unit, quantity
 
@@ -28,11 +29,19 @@ def cube(**settings):
         ("5 J/m2", "J/m^2", 5.0),
         ("5 N/m", "J/m^2", 5.0),
         ("4 cm^2", "m^2 or m^3", 4e-4),
-        ("4 cm^3", "m^2 or m^3", 4e-6),
+        ("5 mm", "m or m^2", 5e-3),
     ],
 )
 def test_number_with_a_unit_is_that_number_in_si(text, unit, number):
     assert quantity(text, Unit(unit)) == pytest.approx(number, rel=1e-15)  # one rounding of the factor
+
+
+def test_unit_that_the_dimension_of_a_scene_decides_is_no_other(capsys):
+    assert quantity("4 cm^3", Unit("m^2 or m^3"), dim=3) == pytest.approx(4e-6, rel=1e-15)
+    assert quantity("4 cm^3", Unit("m^2 or m^3"), dim=2) is None and quantity("5 mm", Unit("m or m^2"), dim=3) is None
+    assert main(["cube", "--quick", "--check", "--set", "loading.width=50mm^2"]) == 2
+    assert "loading.width=50mm^2 is refused" in capsys.readouterr().err
+    assert main(["cube", "--quick", "--check", "--set", "loading.width=50mm"]) == 0
 
 
 @pytest.mark.parametrize(
