@@ -12,8 +12,7 @@ import numpy as np
 import pytest
 import taichi as ti
 
-from rsmpm_ti import Output, load_scene, simulate
-from rsmpm_ti.rock.after_failure import AfterFailure, Variable
+from rsmpm_ti import AfterFailure, Output, Variable, load_scene, simulate
 from rsmpm_ti.rock.tensors import isotropic, trace
 
 TAU = 2e-5  # [s]
