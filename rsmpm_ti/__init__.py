@@ -11,7 +11,9 @@ from importlib.util import find_spec
 
 __version__ = "0.1.0"
 
-NEEDED = "taichi numpy scipy matplotlib cmcrameri PIL fpng meshio rich lazy_loader pydantic pint".split()
+NEEDED = (
+    "taichi numpy scipy matplotlib cmcrameri PIL fpng meshio rich lazy_loader pydantic annotated_types pint".split()
+)
 """Modules without which no command works; they are those of pyproject.toml but for the movie's."""
 
 

@@ -14,7 +14,7 @@ from rsmpm_ti.__main__ import COMMANDS, main
 
 ROOT = Path(__file__).resolve().parent.parent
 PYPROJECT = (ROOT / "pyproject.toml").read_text(encoding="utf-8")
-MODULE_OF = {"pillow": "PIL", "lazy-loader": "lazy_loader"}
+MODULE_OF = {"pillow": "PIL", "lazy-loader": "lazy_loader", "annotated-types": "annotated_types"}
 MOVIE = {"imageio", "imageio-ffmpeg"}  # a movie is not written without them, but a run goes on
 FIRST_USE = {"pint"}  # imported where a text with a unit is met
 
