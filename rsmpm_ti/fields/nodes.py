@@ -44,7 +44,8 @@ class Nodes:
         axes = (ti.ij, ti.ijk)[grid.dim - 2]
         self.sparse, self.blocks = sparse, None
         if sparse:
-            counts = tuple(-(-n // BLOCK) for n in grid.nodes)
+            # Taichi 1.7.4 visits every active node only where counts of blocks are powers of two (its issue 7112)
+            counts = tuple(power_of_two(-(-n // BLOCK)) for n in grid.nodes)
             self.blocks = ti.root.pointer(axes, counts)
             parent = self.blocks.dense(axes, (BLOCK,) * grid.dim)
         else:
@@ -62,6 +63,11 @@ class Nodes:
             self.blocks.deactivate_all()
 
 
+def power_of_two(count: int) -> int:
+    """The smallest that is not below `count`."""
+    return 1 << (count - 1).bit_length()
+
+
 def components(field) -> tuple:
     if isinstance(field, ti.MatrixField):
         columns = range(field.m) if field.ndim == 2 else (None,)
@@ -76,4 +82,4 @@ def use_sparse_grid(scene: Scene, particle_count: int) -> bool:
     if scene.domain.grid != "auto":
         return scene.domain.grid == "sparse"
     per_cell = min(body.seeding.particles_per_axis for body in scene.bodies) ** scene.dim
-    return particle_count / per_cell < 0.25 * np.prod(Grid(scene).nodes)
+    return particle_count / per_cell < 0.25 * np.prod(scene.domain.node_counts)
