@@ -73,7 +73,7 @@ def _roots(kind, length: int) -> list[Row]:
     if length == 4:
         limit, why = 8.0 * eps, "centre +- hypot: round-off of a few sums"
     else:
-        limit, why = 8.0 * eps**0.5, "the cubic's double root: its arccos turns round-off into its root"
+        limit, why = 8.0 * eps**0.5, "the cubic's double root: round-off becomes its square root"
     back = turns(kind, length)
     return [
         at_most(f"{where}: principal stresses that are not finite", bad, 0.0, "no division by what may vanish"),

@@ -128,7 +128,7 @@ def test_extreme_principals_are_those_of_numpy_where_roots_are_apart(taichi_real
     apart = np.diff(values, axis=1).min(axis=1) > 0.3
     assert apart.sum() > 200
     found = principals(s[apart], dim, taichi_real)
-    # at a gap of 0.3 the angle of the cubic is known to about 40 round-offs
+    # at a gap of 0.3 the roots of the cubic are known to about 40 round-offs
     np.testing.assert_allclose(found, values[apart][:, [2, 0]], rtol=0.0, atol=200 * epsilon(taichi_real))
 
 
@@ -149,7 +149,7 @@ def test_extreme_principals_of_repeated_roots_and_near_them(taichi_real, dim, si
     found, expected = principals(s, dim, taichi_real), np.linalg.eigvalsh(tensor(s))[:, [2, 0]]
     assert np.isfinite(found).all()
     assert (found[:, 0] >= found[:, 1] - 1e-30).all()
-    # 3D: acos at +-1 knows its angle to sqrt(2 eps); centre +- hypot in the plane knows every root to round-off
+    # 3D: a double root of the cubic is known to sqrt(2 eps); centre +- hypot in the plane knows every root to round-off
     fraction = 16 * epsilon(taichi_real) if dim == 2 else 2.0 * np.sqrt(epsilon(taichi_real))
     # (in 3D, deviators below 1e-10 Pa count as none)
     scale = np.abs(s).max(axis=1, keepdims=True)
