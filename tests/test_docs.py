@@ -158,7 +158,7 @@ def test_modules_of_commands_are_there(module):
 def known_names(module: str) -> set[str]:
     """What may follow a command as a word: cases, studies, measurements."""
     if module == "rsmpm_ti.bench":
-        return {"speed", "passes", "scaling", "memory", "start", "runs", "error", *available()}
+        return {"speed", "passes", "scaling", "fill", "memory", "start", "runs", "error", *available()}
     catalogue = importlib.import_module(f"{module}.catalogue")
     return set(getattr(catalogue, "CASES", None) or catalogue.STUDIES)
 

@@ -1,4 +1,4 @@
-"""python -m rsmpm_ti.bench speed | passes | scaling | memory | start | runs | error."""
+"""python -m rsmpm_ti.bench speed | passes | scaling | fill | memory | start | runs | error."""
 
 import argparse
 import os
@@ -23,6 +23,9 @@ def parser() -> argparse.ArgumentParser:
     scaling.add_argument("--threads", type=int, default=os.cpu_count() or 1)
     scaling.add_argument("--rounds", type=int, default=3)
     scaling.add_argument("--shape", choices=SHAPES, default="bspline")
+    fill = what.add_parser("fill", help="the sparse grid over the dense one, against how much of the grid is filled")
+    fill.add_argument("--threads", type=int, default=1)
+    fill.add_argument("--rounds", type=int, default=9)
     memory = what.add_parser("memory", help="bytes per particle")
     memory.add_argument("scenes", nargs="*", default=["intact", "cube", "disc", "cube_lab"])
     start = what.add_parser("start", help="seconds until the first step, with and without kept kernels")
@@ -61,6 +64,10 @@ def _measure(options: argparse.Namespace) -> str:
         from rsmpm_ti.bench.scaling import scaling
 
         return scaling(options.rounds, options.threads, options.shape)
+    if options.what == "fill":
+        from rsmpm_ti.bench.fill import fill
+
+        return fill(options.threads, options.rounds)
     if options.what == "memory":
         from rsmpm_ti.bench.scaling import memory
 

@@ -75,11 +75,20 @@ def components(field) -> tuple:
     return (field,)
 
 
+SPARSE_PAYS = 0.03
+"""Filled fraction of the grid below which a step is shorter on the sparse grid: `bench fill`."""
+
+
 def use_sparse_grid(scene: Scene, particle_count: int) -> bool:
-    """'auto' takes the sparse grid where less than a quarter of the nodes can hold material."""
+    """'auto' takes the sparse grid where material fills less than the fraction SPARSE_PAYS of the grid."""
     if scene.domain.outside == "grow":
         return True
     if scene.domain.grid != "auto":
         return scene.domain.grid == "sparse"
+    return filled_fraction(scene, particle_count) < SPARSE_PAYS
+
+
+def filled_fraction(scene: Scene, particle_count: int) -> float:
+    """Cells full of particles over all nodes."""
     per_cell = min(body.seeding.particles_per_axis for body in scene.bodies) ** scene.dim
-    return particle_count / per_cell < 0.25 * np.prod(scene.domain.node_counts)
+    return float(particle_count / per_cell / np.prod(scene.domain.node_counts))

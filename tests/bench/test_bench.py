@@ -4,6 +4,7 @@ import shutil
 import subprocess
 from dataclasses import replace
 
+import numpy as np
 import pytest
 
 from rsmpm_ti.bench.__main__ import main
@@ -119,3 +120,16 @@ def test_memory_is_that_of_the_fields(capsys):
 def test_scaling_names_particles_and_takes_few_steps_of_many():
     assert [particles(dx) for dx in SIZES] == [20000, 80000, 320000, 1280000, 5120000]
     assert steps_for(SIZES[0]) == 500 and steps_for(SIZES[-1]) == 6
+
+
+def test_fill_compares_both_grids_where_the_same_is_filled(capsys, monkeypatch):
+    from rsmpm_ti.bench import fill
+
+    monkeypatch.setattr(fill, "EDGES", {2: (30,), 3: ()})
+    monkeypatch.setattr(fill, "RADIUS", {2: 5})
+    assert main(["fill", "--rounds", "1"]) == 0
+    rows = [line.split() for line in capsys.readouterr().out.splitlines()[2:]]
+    assert [row[:2] for row in rows] == [["linear", "2"], ["bspline", "2"]]
+    for row in rows:
+        assert 5.0 < float(row[2]) < 100.0 * np.pi * 25.0 / 900.0, "pi r^2 over nodes, more than the cells"
+        assert float(row[3]) > 0.0
