@@ -12,8 +12,17 @@ FIRST = ("tests/run/test_resume.py",)
 """Files with tests of half a minute: begun last, they would keep one worker waiting for the other."""
 
 
+KEPT = {"taichi_f64", "taichi_real", "every_traversal"}
+"""Fixtures whose Taichi a file's tests share, and with it fields that they may keep from one to the next."""
+
+
 def pytest_collection_modifyitems(items) -> None:
     items.sort(key=lambda item: not item.nodeid.startswith(FIRST))
+    keepers = {item.path for item in items if KEPT & set(item.fixturenames)}
+    for item in items:
+        # a start frees every field: what a test beside it had kept would be read from memory that is gone
+        if "restart_taichi" in item.fixturenames and item.path in keepers:
+            raise pytest.UsageError(f"{item.nodeid} starts Taichi anew, other tests of its file share one: move it")
 
 
 def start(real, threads: int = 2) -> None:

@@ -3,38 +3,12 @@
 import numpy as np
 import pytest
 import taichi as ti
+from field_kinds import FIELDS, as_taichi_says, made
 from taichi import _kernels
-from taichi.lang import impl
 
 from rsmpm_ti.backend.field_memory import IN_PLACE_OF, views
 
-FIELDS = {
-    "numbers": lambda: ti.field(ti.f64, 7),
-    "whole numbers": lambda: ti.field(ti.i32, (3, 2, 4)),
-    "one number": lambda: ti.field(ti.f64, ()),
-    "vectors apart": lambda: ti.Vector.field(3, ti.f64, (5, 4), layout=ti.Layout.SOA),
-    "vectors whole": lambda: ti.Vector.field(3, ti.f64, (5, 4)),
-    "matrices": lambda: ti.Matrix.field(2, 3, ti.f32, 6),
-}
 pytestmark = pytest.mark.usefixtures("taichi_f64")
-
-
-def made(name: str):
-    """A field among others of its root, and entries for it that are all different."""
-    before, field, behind = ti.field(ti.f32, 3), FIELDS[name](), ti.field(ti.f64, 5)
-    before.fill(1.0)
-    behind.fill(2.0)
-    wanted = np.arange(1.0, 1.0 + field.to_numpy().size).reshape(field.to_numpy().shape) * 1.7
-    return field, wanted.astype(field.to_numpy().dtype), (before, behind)
-
-
-def as_taichi_says(field) -> np.ndarray:
-    array = np.zeros_like(field.to_numpy())
-    if isinstance(field, ti.MatrixField):
-        _kernels.matrix_to_ext_arr.in_place_of(field, array, field.m == 1)
-    else:
-        _kernels.tensor_to_ext_arr.in_place_of(field, array)
-    return array
 
 
 @pytest.mark.parametrize("name", FIELDS)
@@ -66,15 +40,6 @@ def test_sparse_fields_go_through_taichi():
     assert views(field) is None
     field[5] = 3.0
     np.testing.assert_array_equal(field.to_numpy(), 3.0 * (np.arange(16) == 5))
-
-
-def test_fields_after_a_new_start_are_found_where_they_are(restart_taichi):
-    for real in (ti.f64, ti.f32):
-        restart_taichi(real)
-        assert "addresses_of_roots" not in vars(impl.get_runtime()), "none is kept from before, where others lay"
-        field, wanted, _ = made("vectors apart")
-        field.from_numpy(wanted)
-        np.testing.assert_array_equal(as_taichi_says(field), wanted)
 
 
 def test_no_kernel_is_compiled_for_a_second_field():
