@@ -294,7 +294,6 @@ def test_recipes_make_one_scene_that_breaks(folder):
     np.testing.assert_allclose(total, 1.0, atol=1e-14)
     result = simulate(scene, threads=1)
     assert result.summary["failed_tension"] > 0 and result.stopped == ""
-    # walls that do not pull: at rest beside rock that widens, they are pushed by it
     assert result.summary["energy_balance_error"] < 0.02
 
 

@@ -29,7 +29,7 @@ def evaluate_overload(sim: ti.template()):
             if load >= 1.0 and sim.rock.nonlocal_mean.own_decides(sim, p, normal) == 0:
                 particles.overload[p] = load
                 particles.history.crack_normal[p] = normal
-                base = sim.grid.base(coordinates(sim, p), sim.shape)
+                base = sim.grid.base(coordinates(sim, p, sim.grid.frame()), sim.shape)
                 for offset in ti.static(sim.stencil):
                     ti.atomic_max(sim.nonlocal_sums.peak[base + ti.Vector(offset)], load)
 
@@ -42,7 +42,7 @@ def crack_most_overloaded(sim: ti.template(), time: ti.f64):
     for p in range(particles.count):
         load = particles.overload[p]
         if load > 0.0:
-            base = sim.grid.base(coordinates(sim, p), sim.shape)
+            base = sim.grid.base(coordinates(sim, p, sim.grid.frame()), sim.shape)
             most = load
             for offset in ti.static(sim.stencil):
                 most = ti.max(most, sim.nonlocal_sums.peak[base + ti.Vector(offset)])

@@ -6,7 +6,7 @@
 import taichi as ti
 
 from rsmpm_ti.fields.parallel import over_particles
-from rsmpm_ti.fields.stencil import coordinates, weights_at
+from rsmpm_ti.fields.stencil import coordinates, per_metre, weights_at
 from rsmpm_ti.method.tensor_product import tensor_gradient, tensor_weight
 from rsmpm_ti.rock.tensors import extreme_principals
 
@@ -26,7 +26,7 @@ def add_stress(sim: ti.template(), start, stop, slot, what: ti.template(), dt, t
     """sum w_ip V_p sigma_p, sum w_ip V_p and sum w_ip V_p e_p to nodes; e: largest opening strain across the crack."""
     particles = sim.particles
     for p in range(start, stop):
-        xi = coordinates(sim, p)
+        xi = coordinates(sim, p, sim.grid.frame())
         base = sim.grid.base(xi, sim.shape)
         w, dw = weights_at(sim, xi, base)
         sigma, V_p = particles.sigma[p], particles.volume[p] * particles.J[p]
@@ -58,7 +58,7 @@ def blur(sim: ti.template(), source: ti.template(), target: ti.template(), axis:
 @ti.func
 def mean_stress(sim: ti.template(), p):
     """Packed mean stress at a particle."""
-    xi = coordinates(sim, p)
+    xi = coordinates(sim, p, sim.grid.frame())
     base = sim.grid.base(xi, sim.shape)
     w, dw = weights_at(sim, xi, base)
     total = ti.Vector.zero(float, 6)
@@ -79,9 +79,10 @@ def read_crack_strains(sim: ti.template()):
     particles, means = sim.particles, sim.nonlocal_sums
     for p in particles.mode:
         if particles.mode[p] != 0:
-            xi = coordinates(sim, p)
+            xi = coordinates(sim, p, sim.grid.frame())
             base = sim.grid.base(xi, sim.shape)
-            w, dw = weights_at(sim, xi, base)
+            w, slopes = weights_at(sim, xi, base)
+            dw = per_metre(sim, slopes, sim.grid.frame())
             volume, strain, gradient = 0.0, 0.0, ti.Vector.zero(float, 2)
             for offset in ti.static(sim.stencil):
                 total = means.sums[base + ti.Vector(offset)]
@@ -89,7 +90,7 @@ def read_crack_strains(sim: ti.template()):
                 strain += tensor_weight(w, offset) * total[5]
             for offset in ti.static(sim.stencil):
                 total = means.sums[base + ti.Vector(offset)]
-                slope = tensor_gradient(w, dw, offset, sim.grid.inv_dx)
+                slope = tensor_gradient(w, dw, offset)
                 gradient += (total[5] - strain / volume * total[4]) * slope
             away = ti.abs(gradient.dot(particles.history.crack_normal[p])) * means.variance / ti.max(strain, 1e-30)
             part = ti.max(0.0, ti.min(1.0, 2.0 - 2.0 * away / sim.band))
@@ -117,7 +118,7 @@ def mark_overloaded(sim: ti.template(), limit: float):
 
 @ti.func
 def near_overloaded(sim: ti.template(), p):
-    base = sim.grid.base(coordinates(sim, p), sim.shape)
+    base = sim.grid.base(coordinates(sim, p, sim.grid.frame()), sim.shape)
     near = 0
     for offset in ti.static(sim.stencil):
         near |= sim.nonlocal_sums.overloaded[base + ti.Vector(offset)]

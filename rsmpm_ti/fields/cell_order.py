@@ -4,13 +4,14 @@ import numpy as np
 import taichi as ti
 
 from rsmpm_ti.fields.state import Simulation
+from rsmpm_ti.fields.stencil import coordinates
 
 
 @ti.kernel
 def cell_keys(sim: ti.template()):
-    particles, grid = sim.particles, sim.grid
-    for p in particles.key:
-        particles.key[p] = grid.key(grid.base(grid.local(particles.reference[p] + particles.u[p]), sim.shape))
+    grid = sim.grid
+    for p in sim.particles.key:
+        sim.particles.key[p] = grid.key(grid.base(coordinates(sim, p, grid.frame()), sim.shape))
 
 
 @ti.kernel

@@ -1,5 +1,6 @@
-"""Geometry of the background grid."""
+"""Geometry of the background grid, which follows what presses on it along each axis that has a moving boundary."""
 
+import numpy as np
 import taichi as ti
 
 from rsmpm_ti.spec.scene import MARGIN, Scene
@@ -10,7 +11,23 @@ NO_WALL = -(10**6)
 
 @ti.data_oriented
 class Grid:
-    """Geometry of the background grid: node i sits at origin + i dx [m]."""
+    """Geometry of the background grid. At the start node i sits at origin + i dx [m], and by this place, its label,
+    boundaries know their nodes.
+
+    MPM throws its grid away in every step, so the next one may be spaced as is best. Along an axis with a moving
+    boundary the planes of both sides go with their boundaries, and all nodes between and beyond stay evenly spaced:
+
+        x_i = origin + i spacing
+        spacing = dx + (t_u - t_l) / (n_u - n_l)
+        origin = origin_0 + t_l - n_l (spacing - dx)
+
+    with t the way that a side has gone [m] and n the number of its plane. So a platen is always a plane of nodes, and
+    under uniform strain no particle changes its place in its cell: uniform strain stays exact, however large. With a
+    boundary on one side only, the grid moves as a whole.
+
+    A frame [dim, 3] is origin, 1/spacing and spacing for each axis. Node values of a step belong to `start_frame`, that
+    of the step's start; what particles give to nodes for the next step to `frame`, that of the time they are at.
+    """
 
     def __init__(self, scene: Scene):
         domain, dim = scene.domain, scene.dim
@@ -20,7 +37,7 @@ class Grid:
         self.origin = tuple(float(a) - beyond * domain.dx for a in domain.lower)
         lower, upper = [NO_WALL] * dim, [-NO_WALL] * dim
         for boundary in scene.loading.boundaries:
-            row = round((boundary.position - self.origin[boundary.axis]) / domain.dx)
+            row = self.row(boundary)
             if boundary.side == "lower":
                 lower[boundary.axis] = max(lower[boundary.axis], row)
             else:
@@ -29,16 +46,96 @@ class Grid:
         # walls whose nodes are folded, as (axis, row, step inwards, nodes of the row): see wall_nodes.py
         folded = scene.shape.width == 3 and not scene.transfer.affine
         self.walls = tuple(
-            (d, rows[d], step, tuple(1 if e == d else n for e, n in enumerate(self.nodes)))
+            (d, rows[d], step, self.plane(d))
             for d in range(dim)
             for rows, step in ((lower, 1), (upper, -1))
             if folded and abs(rows[d]) != -NO_WALL
         )
+        self.speeds = scene.loading.side_speeds(dim)
+        self.followed = tuple(d for d in range(dim) if any(self.speeds[d]))
+        # of an axis with one boundary the other side goes with it
+        self.rows = tuple(
+            tuple(own if abs(own) != -NO_WALL else other + step for own, other, step in ((low, up, -1), (up, low, 1)))
+            for low, up in zip(lower, upper, strict=True)
+        )
+        self.travel = ti.field(ti.f64, (dim, 2))  # of each side since the start [m]
+        self._now, self._start = ti.field(ti.f64, (dim, 3)), ti.field(ti.f64, (dim, 3))
+        at_rest = np.array([(origin, self.inv_dx, self.dx) for origin in self.origin])
+        self.resume({"grid_travel": np.zeros((dim, 2)), "grid_frame": at_rest})
+
+    def row(self, boundary) -> int:
+        """Number of a boundary's plane of nodes along its axis."""
+        return round((boundary.position - self.origin[boundary.axis]) / self.dx)
+
+    def plane(self, axis: int) -> tuple[int, ...]:
+        """Nodes of a plane across an axis, as numbers along each axis: 1 along its own."""
+        return tuple(1 if d == axis else n for d, n in enumerate(self.nodes))
+
+    def state(self) -> dict[str, np.ndarray]:
+        """Between two steps: how far each side has gone [m], [dim, 2], and the frame, [dim, 3], to the last bit."""
+        return {"grid_travel": self.travel.to_numpy(), "grid_frame": self._now.to_numpy()}
+
+    def resume(self, state: dict[str, np.ndarray]) -> None:
+        self.travel.from_numpy(state["grid_travel"])
+        for field in (self._now, self._start):
+            field.from_numpy(state["grid_frame"])
+
+    @property
+    def fastest(self) -> float:
+        """Largest speed of a side at full speed [m/s]."""
+        return max(abs(speed) for axis in self.speeds for speed in axis)
 
     @ti.func
-    def local(self, x):
-        """Grid coordinates x/dx from the first node."""
-        return (x - ti.Vector(self.origin)) * self.inv_dx
+    def move(self, dt, factor):
+        """Start the next frame: sides go on as particles do, by dt times their speed."""
+        for d in ti.static(self.followed):
+            for side in ti.static(range(2)):
+                way = ti.cast(ti.static(self.speeds[d][side]), ti.f64) * ti.cast(factor, ti.f64) * ti.cast(dt, ti.f64)
+                self.travel[d, side] = self.travel[d, side] + way
+            for column in ti.static(range(3)):
+                self._start[d, column] = self._now[d, column]
+            rows = ti.static(self.rows[d])
+            stretch = (self.travel[d, 1] - self.travel[d, 0]) / ti.static(float(rows[1] - rows[0]))
+            spacing = ti.static(self.dx) + stretch
+            self._now[d, 0] = ti.static(self.origin[d]) + self.travel[d, 0] - ti.static(float(rows[0])) * stretch
+            self._now[d, 1] = 1.0 / spacing
+            self._now[d, 2] = spacing
+
+    @ti.func
+    def settle(self):
+        """The step has ended: its start is now."""
+        for d in ti.static(self.followed):
+            for column in ti.static(range(3)):
+                self._start[d, column] = self._now[d, column]
+
+    @ti.func
+    def frame(self):
+        """Of now. To be called once, before the loops: what they then use are locals, and they stay vectorised."""
+        return self._read(self._now)
+
+    @ti.func
+    def start_frame(self):
+        """Of the step's start."""
+        return self._read(self._start)
+
+    @ti.func
+    def _read(self, field: ti.template()):
+        frame = ti.Matrix.zero(float, self.dim, 3)
+        for d in ti.static(range(self.dim)):
+            if ti.static(d in self.followed):
+                for column in ti.static(range(3)):
+                    frame[d, column] = ti.cast(field[d, column], float)
+            else:
+                frame[d, 0], frame[d, 1], frame[d, 2] = self.origin[d], self.inv_dx, self.dx
+        return frame
+
+    @ti.func
+    def local(self, x, frame):
+        """Grid coordinates of a place, in cells from the first node."""
+        xi = ti.Vector.zero(float, self.dim)
+        for d in ti.static(range(self.dim)):
+            xi[d] = (x[d] - frame[d, 0]) * frame[d, 1]
+        return xi
 
     @ti.func
     def base(self, xi, shape: ti.template()):
@@ -67,5 +164,6 @@ class Grid:
         return base
 
     @ti.func
-    def position(self, i):
+    def label(self, i):
+        """Where node i was at the start."""
         return ti.Vector(self.origin) + i * self.dx

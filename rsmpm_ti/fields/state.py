@@ -6,6 +6,7 @@ import numpy as np
 import taichi as ti
 
 from rsmpm_ti.errors import SceneError
+from rsmpm_ti.fields.contacts import Contacts
 from rsmpm_ti.fields.grid import Grid
 from rsmpm_ti.fields.nodes import Nodes, use_sparse_grid
 from rsmpm_ti.fields.nonlocal_sums import NonlocalSums
@@ -56,6 +57,7 @@ class Simulation:
         self.force_field = scene.loading.force_field or NoForceField()
         self.loaded = any(component != 0.0 for component in force) or scene.loading.force_field is not None
         self.grid = Grid(scene)
+        self.contacts = Contacts(scene, self.grid, real)
         self.drops = scene.domain.outside == "drop"
         self.outside_is_sick = 0 if self.drops else 1
         count = sum(len(body.x) for body in seeds)

@@ -14,9 +14,9 @@ interleaves four copies of its vector instructions, and runs of fewer than 16 pa
 
 
 @ti.func
-def coordinates(sim: ti.template(), p):
-    """Grid coordinates x/dx of a particle."""
-    return sim.grid.local(sim.particles.reference[p] + sim.particles.u[p])
+def coordinates(sim: ti.template(), p, frame):
+    """Grid coordinates of a particle, in cells."""
+    return sim.grid.local(sim.particles.reference[p] + sim.particles.u[p], frame)
 
 
 @ti.func
@@ -44,12 +44,22 @@ def weights_at(sim: ti.template(), xi, base):
 
 
 @ti.func
-def weights_and_gradients(sim: ti.template(), xi, base):
+def per_metre(sim: ti.template(), dw, frame):
+    """Gradients [width, dim] in 1/m."""
+    scaled = dw
+    for d in ti.static(range(sim.dim)):
+        for k in ti.static(range(sim.shape.width)):
+            scaled[k, d] = dw[k, d] * frame[d, 1]
+    return scaled
+
+
+@ti.func
+def weights_and_gradients(sim: ti.template(), xi, base, frame):
     """The same, gradients in 1/m; corrected here only if node values are not (see wall_nodes.py)."""
     w, dw = sim.shape.weights(xi - base), sim.shape.gradients(xi - base)
     if ti.static(sim.transfer.affine):
         w, dw = weights_at(sim, xi, base)
-    return w, sim.grid.inv_dx * dw
+    return w, per_metre(sim, dw, frame)
 
 
 @ti.func

@@ -26,6 +26,7 @@ class Linear:
     stable_cfl = 1.37  # smallest limit of musl/usf with free edges at any offset, in units of dx/c_p
     affine_cfl = 0.8  # the same with an affine transfer while no particle crosses; then none holds
     crack_band = 1.0  # width of the band that a crack opens over [cells]
+    overhang = 0.0  # integral of the function beyond one cell on one side [cells]
     variance = 1.0 / 6.0  # second moment of the function [cells^2]
 
     @ti.func
@@ -70,6 +71,10 @@ class Gimp:
     def variance(self) -> float:
         return 1.0 / 6.0 + self.half_width**2 / 3.0
 
+    @property
+    def overhang(self) -> float:
+        return self.half_width**2 / 12.0
+
     @ti.func
     def value(self, r):
         d, l = abs(r), self.half_width
@@ -101,6 +106,7 @@ class QuadraticBSpline:
     stable_cfl = 1.7
     affine_cfl = 1.2
     crack_band = 2.0
+    overhang = 1.0 / 48.0
     variance = 0.25
 
     @ti.func

@@ -62,11 +62,11 @@ def tensor_weight(w: ti.template(), offset: ti.template()):
 
 
 @ti.func
-def tensor_gradient(w: ti.template(), dw: ti.template(), offset: ti.template(), inv_dx):
-    """grad w_ip [1/m]: along each axis its own gradient times the other axes' weights."""
+def tensor_gradient(w: ti.template(), dw: ti.template(), offset: ti.template()):
+    """grad w_ip: along each axis its own gradient times the other axes' weights."""
     gradient = ti.Vector.zero(float, w.m)
     for axis in ti.static(range(w.m)):
-        g = dw[offset[axis], axis] * inv_dx
+        g = dw[offset[axis], axis]
         for d in ti.static(others(axis, w.m)):
             g *= w[offset[d], d]
         gradient[axis] = g

@@ -34,10 +34,19 @@ def stable_cfl(scene) -> float:
     return min(limit, USL_CFL) if scene.order == "usl" else limit
 
 
+def smallest_spacing(scene) -> float:
+    """Of nodes in a run [m]: the grid goes with the platens, and shrinks as they come closer."""
+    loading = scene.loading
+    if loading.platens is None or not loading.strain_rate > 0.0:
+        return scene.domain.dx
+    strain = scene.schedule.strain_end or loading.strain_rate * scene.t_end
+    return scene.domain.dx * max(1.0 - strain, 0.1)
+
+
 def check_step(scene) -> None:
     """Raises SceneError unless the steps of a `Scene` are stable and can be counted."""
     schedule = scene.schedule
-    limit = stable_cfl(scene) * scene.domain.dx / scene.wave_speed
+    limit = stable_cfl(scene) * smallest_spacing(scene) / scene.wave_speed
     transit = scene.domain.dx / scene.wave_speed
     true_transit = scene.domain.dx / scene.rock.wave_speed()  # without mass scaling: what the paper's digits are
     if MIN_CFL * transit <= scene.dt <= limit:

@@ -32,7 +32,7 @@ def spread(sim: ti.template(), w, r):
 
 
 @ti.func
-def velocity_to_particle(sim: ti.template(), p, w, xi, base, v_i: ti.template(), dv_i: ti.template()):
+def velocity_to_particle(sim: ti.template(), p, w, xi, base, frame, v_i: ti.template(), dv_i: ti.template()):
     """New particle velocity, and affine matrix if carried, from node velocities [stencil, dim]."""
     particles = sim.particles
     v_pic, dv = interpolate(sim, w, v_i), interpolate(sim, w, dv_i)
@@ -43,7 +43,7 @@ def velocity_to_particle(sim: ti.template(), p, w, xi, base, v_i: ti.template(),
             for d, e in ti.static(ti.ndrange(sim.dim, sim.dim)):
                 B[d, e] += tensor_weight(w, offset) * v_i[k, d] * (offset[e] - (xi[e] - base[e]))
         for d, e in ti.static(ti.ndrange(sim.dim, sim.dim)):
-            B[d, e] *= sim.grid.inv_dx / D[e]
+            B[d, e] *= frame[e, 1] / D[e]
         particles.C[p] = B
 
 
@@ -60,6 +60,7 @@ def nodes_to_particles(sim: ti.template(), start, stop, slot, what: ti.template(
     """v_p, x_p <- x_p + dt v_pic, and L = grad v, each if asked, at the weights of the step's start."""
     particles, nodes = sim.particles, sim.nodes
     work = ti.cast(0.0, ti.f64)
+    frame = sim.grid.start_frame()
     first = start
     while first < stop:
         last = run_stop(sim, first, stop)
@@ -68,12 +69,12 @@ def nodes_to_particles(sim: ti.template(), start, stop, slot, what: ti.template(
         w_i = gather(sim, nodes.v_remapped, base)
         for k in range((last - first) & MAX_RUN):
             p = first + k
-            xi = coordinates(sim, p)
-            w, dw = weights_and_gradients(sim, xi, base)
+            xi = coordinates(sim, p, frame)
+            w, dw = weights_and_gradients(sim, xi, base, frame)
             if ti.static(what.stress):
                 particles.L[p] = velocity_gradient(sim, w, dw, w_i)
             if ti.static(what.velocity):
-                velocity_to_particle(sim, p, w, xi, base, v_i, dv_i)
+                velocity_to_particle(sim, p, w, xi, base, frame, v_i, dv_i)
             if ti.static(what.position):
                 v_pic = interpolate(sim, w, v_i)
                 # not +=, which is an atomic add on a field

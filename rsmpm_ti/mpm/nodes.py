@@ -7,6 +7,7 @@ v_i <- v_i + dt (f_i / m_i + b)                       (momentum equation, paper 
 import taichi as ti
 
 from rsmpm_ti.fields.nodes import SMALL_MASS
+from rsmpm_ti.mpm.contact import clear_gaps, keep_state, kept_state, squeeze, touching
 from rsmpm_ti.mpm.wall_nodes import extend, fold
 
 
@@ -39,16 +40,17 @@ def clear_node(sim: ti.template(), i, dt, factor):
 
 @ti.kernel
 def clear_nodes(sim: ti.template()):
+    clear_gaps(sim)
     over_nodes(sim, clear_node, 0.0, 0.0)
 
 
 @ti.func
 def hold(sim: ti.template(), i, v, factor):
-    """Node velocity after every boundary that holds the node."""
+    """Velocity mapped apart from force, after every boundary that holds the node: as the node was held last."""
     held = v
-    for boundary in ti.static(sim.boundaries):
-        if boundary.holds(sim.grid.position(i), sim.grid.dx):
-            held = boundary.project(held, factor)
+    for b, boundary in ti.static(enumerate(sim.boundaries)):
+        if boundary.holds(sim.grid.label(i), sim.grid.dx):
+            held = boundary.keep(held, factor, kept_state(sim, b, i))
     return held
 
 
@@ -104,8 +106,11 @@ def accelerate(sim: ti.template(), i, velocity: ti.template(), dt, factor):
             v += dt * inverse * nodes.f[i]
         v += dt * ti.Vector(sim.acceleration)
         for b, boundary in ti.static(enumerate(sim.boundaries)):
-            if boundary.holds(sim.grid.position(i), sim.grid.dx):
-                held = boundary.project(v, factor)
+            if boundary.holds(sim.grid.label(i), sim.grid.dx):
+                held, state = v, 0
+                if touching(sim, b, i):
+                    held, state = boundary.project(v, factor, squeeze(sim, dt))
+                keep_state(sim, b, i, state)
                 impulse = ti.cast(m * (held - v), ti.f64)
                 work = impulse.dot(ti.cast(held, ti.f64))
                 ledger.impulse[b] += impulse
@@ -146,6 +151,14 @@ def new_velocity(
     over_nodes(sim, update, dt, factor)
     extend(sim.nodes.v_columns, sim.grid.walls)
     extend(sim.nodes.f_columns, sim.grid.walls)
+
+
+@ti.kernel
+def move_grid(sim: ti.template(), dt: float, factor: float):
+    """To where platens are after a step. Not for musl, which begins the next step in this one's last pass."""
+    for _ in range(1):
+        sim.grid.move(dt, factor)
+        sim.grid.settle()
 
 
 @ti.kernel

@@ -12,6 +12,7 @@ import taichi as ti
 
 from rsmpm_ti.fields.stencil import MAX_RUN, coordinates, run_stop, scatter, scatter_mass, weights_and_gradients
 from rsmpm_ti.method.tensor_product import row_gradient, row_weight
+from rsmpm_ti.mpm.contact import find_gaps
 from rsmpm_ti.rock.tensors import isotropic, unpack
 
 
@@ -40,8 +41,17 @@ def add_mass(sim: ti.template(), nodes: ti.template(), w: ti.template(), m_row, 
 
 
 @ti.func
+def spacing(sim: ti.template(), frame):
+    """Of nodes along each axis [m]."""
+    step = ti.Vector.zero(float, sim.dim)
+    for d in ti.static(range(sim.dim)):
+        step[d] = frame[d, 2]
+    return step
+
+
+@ti.func
 def add_momentum(
-    sim: ti.template(), nodes: ti.template(), w: ti.template(), p, xi, base, m_row, mv_row, mv: ti.template()
+    sim: ti.template(), nodes: ti.template(), w: ti.template(), p, xi, base, frame, m_row, mv_row, mv: ti.template()
 ):
     """(m v)_i += w_ip m_p v_p (paper eq. 7), for the nodes of one row; mv_row = w_row m_p v_p.
 
@@ -51,7 +61,7 @@ def add_momentum(
     for k, offset, i in ti.static(nodes):
         mv_node = mv_row
         if ti.static(particles.affine):
-            mv_node += m_row * (particles.C[p] @ ((base + ti.Vector(offset) - xi) * sim.grid.dx))
+            mv_node += m_row * (particles.C[p] @ ((base + ti.Vector(offset) - xi) * spacing(sim, frame)))
         for e in ti.static(range(sim.dim)):
             mv[i, e] += mv_node[e] * w[k, last]
 
@@ -73,6 +83,7 @@ def add_particle(
     p,
     xi,
     base,
+    frame,
     w: ti.template(),
     dw: ti.template(),
     time,
@@ -102,13 +113,14 @@ def add_particle(
             for d in ti.static(range(sim.dim - 1)):
                 t_row[e] += sigma[e, d] * dw_row[d]
         add_mass(sim, nodes, w, m_row, m)
-        add_momentum(sim, nodes, w, p, xi, base, m_row, mv_row, mv)
+        add_momentum(sim, nodes, w, p, xi, base, frame, m_row, mv_row, mv)
         add_force(sim, nodes, w, dw, t_row, t_last, f)
 
 
 @ti.func
 def particles_to_nodes(sim: ti.template(), start, stop, slot, what: ti.template(), dt, time):
     """Mass and momentum, force, or both, of particles [start, stop) to the nodes around their bases."""
+    frame = sim.grid.frame()
     first = start
     while first < stop:
         last = run_stop(sim, first, stop)
@@ -117,13 +129,14 @@ def particles_to_nodes(sim: ti.template(), start, stop, slot, what: ti.template(
         mv, f = ti.Matrix.zero(float, sim.size, sim.dim), ti.Matrix.zero(float, sim.size, sim.dim)
         for k in range((last - first) & MAX_RUN):
             p = first + k
-            xi = coordinates(sim, p)
-            w, dw = weights_and_gradients(sim, xi, base)
-            add_particle(sim, p, xi, base, w, dw, time - what.force_lag * dt, m, mv, f)
+            xi = coordinates(sim, p, frame)
+            w, dw = weights_and_gradients(sim, xi, base, frame)
+            add_particle(sim, p, xi, base, frame, w, dw, time - what.force_lag * dt, m, mv, f)
         # what is not asked for ends here, and the compiler leaves its sums out
         if ti.static(what.momentum):
             scatter_mass(sim, base, m)
             scatter(sim, sim.nodes.v, base, mv)
+            find_gaps(sim, first, last, base, frame)
         if ti.static(what.force):
             scatter(sim, sim.nodes.f, base, f)
         first = last

@@ -7,6 +7,7 @@ Schreyer (1995), sec. 3.
 import taichi as ti
 
 from rsmpm_ti.fields.stencil import MAX_RUN, coordinates, gather, run_stop, scatter, weights_and_gradients
+from rsmpm_ti.mpm.contact import clear_gaps
 from rsmpm_ti.mpm.g2p import velocity_to_particle
 from rsmpm_ti.mpm.nodes import clear_node, over_nodes, velocity_of
 from rsmpm_ti.mpm.p2g import add_particle
@@ -17,6 +18,7 @@ from rsmpm_ti.mpm.wall_nodes import extend, fold
 def remap_span(sim: ti.template(), start, stop, slot, what: ti.template(), dt, time):
     """New velocities for particles, and their momentum to v_remapped, in one go over each run."""
     nodes = sim.nodes
+    frame = sim.grid.start_frame()
     first = start
     while first < stop:
         last = run_stop(sim, first, stop)
@@ -26,10 +28,10 @@ def remap_span(sim: ti.template(), start, stop, slot, what: ti.template(), dt, t
         mv, f = ti.Matrix.zero(float, sim.size, sim.dim), ti.Matrix.zero(float, sim.size, sim.dim)
         for k in range((last - first) & MAX_RUN):
             p = first + k
-            xi = coordinates(sim, p)
-            w, dw = weights_and_gradients(sim, xi, base)
-            velocity_to_particle(sim, p, w, xi, base, v_i, dv_i)
-            add_particle(sim, p, xi, base, w, dw, 0.0, m, mv, f)
+            xi = coordinates(sim, p, frame)
+            w, dw = weights_and_gradients(sim, xi, base, frame)
+            velocity_to_particle(sim, p, w, xi, base, frame, v_i, dv_i)
+            add_particle(sim, p, xi, base, frame, w, dw, 0.0, m, mv, f)
         # mass is the same, and force comes from the new stress: the compiler leaves their sums out
         scatter(sim, nodes.v_remapped, base, mv)
         first = last
@@ -46,6 +48,7 @@ def remapped_velocity(sim: ti.template(), i, dt, factor):
 @ti.func
 def velocity_after_remap(sim: ti.template(), factor: ti.template()):
     """v_remapped becomes velocity, v_moving takes the step's; mass, v and f are cleared for the next step's sums."""
+    clear_gaps(sim)
     fold(sim.nodes.v_remapped_columns, sim.grid.walls)
     over_nodes(sim, remapped_velocity, 0.0, factor)
     extend(sim.nodes.v_remapped_columns, sim.grid.walls)

@@ -1,7 +1,7 @@
 """Time stepping: musl, usf and usl as lists of passes, and the clock that counts them."""
 
 from rsmpm_ti.fields.state import Simulation
-from rsmpm_ti.mpm.nodes import clear_nodes, momentum_to_velocity, update_moving_nodes, update_nodes
+from rsmpm_ti.mpm.nodes import clear_nodes, momentum_to_velocity, move_grid, update_moving_nodes, update_nodes
 from rsmpm_ti.mpm.passes import Pass, g2p, musl_step, p2g
 
 LOAD = Pass(momentum=True, force=True)
@@ -19,6 +19,12 @@ def scatter_all(sim: Simulation, what: Pass, time: float) -> None:
 
 def gather_all(sim: Simulation, what: Pass, dt: float, time: float) -> None:
     g2p(sim, what, dt, time, sim.traversal.ticket())
+
+
+def follow(sim: Simulation, dt: float, factor: float) -> None:
+    """The grid goes to where platens are at a step's end."""
+    if sim.grid.followed:
+        move_grid(sim, dt, factor)
 
 
 def musl(sim: Simulation, dt: float, start: float, factors: list[float]) -> None:
@@ -45,6 +51,7 @@ def usf(sim: Simulation, dt: float, start: float, factors: list[float]) -> None:
         gather_all(sim, STRESS_AND_FORCE, dt, time)
         update_moving_nodes(sim, dt, factor)
         gather_all(sim, VELOCITY_AND_MOVE, dt, time)
+        follow(sim, dt, factor)
 
 
 def usl(sim: Simulation, dt: float, start: float, factors: list[float]) -> None:
@@ -54,6 +61,7 @@ def usl(sim: Simulation, dt: float, start: float, factors: list[float]) -> None:
         scatter_all(sim, LOAD, start + (step - 1) * dt)
         update_nodes(sim, dt, factor)
         gather_all(sim, EVERYTHING, dt, start + step * dt)
+        follow(sim, dt, factor)
 
 
 ORDERS = {"musl": musl, "usf": usf, "usl": usl}

@@ -36,8 +36,8 @@ def uniaxial_test(
     """
     plate = Box(lower=(0.0, 0.0), upper=(width, height))
     platens = (
-        Platen(axis=1, side="lower", position=0.0, speed=speed),
-        Platen(axis=1, side="upper", position=height, speed=-speed),
+        Platen(axis=1, side="lower", position=0.0, speed=speed, pulls=speed < 0.0),
+        Platen(axis=1, side="upper", position=height, speed=-speed, pulls=speed < 0.0),
     )
     return Scene(
         title=title,

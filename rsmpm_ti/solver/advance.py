@@ -8,6 +8,8 @@ from rsmpm_ti.fields.cell_order import first_rows, sort_particles
 from rsmpm_ti.fields.state import Simulation
 from rsmpm_ti.method.time_step import adapted
 from rsmpm_ti.mpm.clock import Clock
+from rsmpm_ti.mpm.nodes import clear_nodes
+from rsmpm_ti.mpm.stepper import LOAD, scatter_all
 from rsmpm_ti.solver.guard import guard
 from rsmpm_ti.solver.outflow import Dropped, drop
 from rsmpm_ti.solver.survey import survey
@@ -27,6 +29,10 @@ class Drive:
         """seeds: `scene.particles()`; real: ti.f64 or ti.f32; deterministic: same bits with any number of threads."""
         self.sim = Simulation(scene, seeds, real, gpu, deterministic)
         sort_particles(self.sim)
+        if self.sim.contacts.planes:
+            clear_nodes(self.sim)
+            scatter_all(self.sim, LOAD, 0.0)
+            self.sim.contacts.sit()
         self.clock = Clock(self.sim)
         self.survey = survey(self.sim)
         self.dropped = Dropped(count=0, mass=0.0, momentum=np.zeros(scene.dim), energy=0.0)
@@ -62,7 +68,8 @@ class Drive:
 
     def _chunk(self, most: int) -> int:
         """Take steps, at most so many, look at the particles, and sort them if they need it; how many were taken."""
-        travel = max(self.survey.speed * self.clock.dt, 1e-30)
+        # particles against nodes, which go at most as fast as the platens
+        travel = max((self.survey.speed + self.sim.grid.fastest) * self.clock.dt, 1e-30)
         chunk = min(most, max(1, math.floor(SAFE_CELLS * self.sim.grid.dx / travel)))
         self.clock.advance(chunk)
         self.survey = survey(self.sim)

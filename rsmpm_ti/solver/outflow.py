@@ -43,11 +43,12 @@ def park(sim: ti.template()):
     """Take every particle outside the domain out of the run."""
     particles = sim.particles
     for p in particles.key:
-        if left_domain(sim, coordinates(sim, p)):
+        frame = sim.grid.frame()
+        if left_domain(sim, coordinates(sim, p, frame)):
             particles.volume[p] = 0.0
             particles.J[p] = sim.J_start
             for d in ti.static(range(sim.dim)):
-                middle = sim.grid.origin[d] + 0.5 * (sim.grid.nodes[d] - 1) * sim.grid.dx
+                middle = frame[d, 0] + 0.5 * (sim.grid.nodes[d] - 1) * frame[d, 2]
                 particles.u[p][d] = middle - particles.reference[p][d]
             for component in ti.static(particles.resting_components):
                 component[p] = 0

@@ -7,6 +7,7 @@ import taichi as ti
 
 from rsmpm_ti.fields.records import SCALARS
 from rsmpm_ti.fields.state import Simulation
+from rsmpm_ti.fields.stencil import coordinates
 
 FIXED = len(SCALARS) + 2
 """Places in the report before the momentum: the scalars and the two failure counts."""
@@ -52,6 +53,7 @@ def _survey(sim: ti.template()):
     particles, grid, rock, report = sim.particles, sim.grid, sim.rock, sim.report
     ti.loop_config(serialize=sim.traversal.ordered)
     for p in range(particles.count):
+        frame = grid.frame()
         v = particles.v[p]
         m_p = sim.density * particles.volume[p]
         sigma, J = particles.sigma[p], particles.J[p]
@@ -62,7 +64,7 @@ def _survey(sim: ti.template()):
                 stored = rock.after_failure.stored(sim, p)
                 if rock.after_failure.is_open(sim, p) == 1:
                     J_open = 1.0
-        xi = grid.local(particles.reference[p] + particles.u[p])
+        xi = coordinates(sim, p, frame)
         sick = 0
         if left_domain(sim, xi):
             sick = sim.outside_is_sick

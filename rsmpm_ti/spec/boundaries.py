@@ -1,6 +1,12 @@
 """Planes of nodes that are held: what they do to a node's velocity.
 
-A boundary holds every node on its plane and beyond it. `factor` is the start ramp, 0 to 1.
+A boundary holds every node on its plane and beyond it, known by where they were at the start: the grid goes with the
+boundaries (`fields/grid.py`). `factor` is the start ramp, 0 to 1.
+
+`project(v, factor, squeeze)` takes the velocity that a node has after the forces of a step and gives the held one and
+what the node then does, FREE, SLIDES or STICKS. squeeze: what the confining pressure alone would take from it [m/s].
+`keep(v, factor, state)` holds a velocity that is mapped to the node in the same step without forces, as `project` did.
+`unilateral`: whether it acts only on rock that touches the plane (`mpm/contact.py`).
 """
 
 from dataclasses import dataclass
@@ -28,14 +34,21 @@ def beyond(x, dx, axis: ti.template(), side: ti.template(), position):
     return outward * (x[axis] - position) >= -0.25 * dx
 
 
+FREE, SLIDES, STICKS = 0, 1, 2
+"""What a node does at a boundary that pushes: nothing, slip along it, or stay where it is on it."""
+
+
 @ti.data_oriented
 @checked("platen")
 @dataclass(frozen=True, kw_only=True)
 class Platen:
     """A rigid plate: prescribed normal velocity `speed` [m/s], signed along +axis.
 
-    Lateral motion is free (default), limited by Coulomb `friction`, or `bonded`. `span` limits the plate to an
-    interval [m] of the first lateral axis: the arc of a Brazilian test.
+    It pushes and does not pull: rock that comes back leaves it, and rock that lies off it is met where it is. `pulls`
+    holds rock in tension too, as a glued plate does that leaves lateral motion free. Lateral motion is free (default),
+    limited by Coulomb `friction` on what presses, the confining pressure included, or none: `bonded` holds both ways
+    and in every direction. `span` limits the plate to an interval [m] of the first lateral axis: the arc of a
+    Brazilian test.
     """
 
     axis: Axis
@@ -44,6 +57,7 @@ class Platen:
     speed: Annotated[Velocity, Finite]
     friction: Annotated[float, Interval(ge=0.0, le=MAX_FRICTION), Remedy("or set bonded")] = 0.0
     bonded: bool = False
+    pulls: bool = False
     span: tuple[Coordinate, Coordinate] | None = None
 
     def __post_init__(self):
@@ -54,6 +68,11 @@ class Platen:
     def limited(self) -> bool:
         return self.span is not None
 
+    @property
+    def unilateral(self) -> bool:
+        """Whether it only pushes."""
+        return not (self.bonded or self.pulls)
+
     @ti.func
     def holds(self, x, dx):
         held = beyond(x, dx, self.axis, self.side, self.position)
@@ -63,17 +82,36 @@ class Platen:
         return held
 
     @ti.func
-    def project(self, v, factor):
-        held, normal = v, self.speed * factor
+    def project(self, v, factor, squeeze):
+        held, state, normal = v, FREE, self.speed * factor
+        outward = ti.static(1.0 if self.side == "upper" else -1.0)
+        pressing = outward * (v[self.axis] - normal) + squeeze  # impulse by which the platen pushes, over the mass
+        if ti.static(self.bonded):
+            held, state = ti.Vector.zero(float, v.n), STICKS
+        elif ti.static(self.pulls) or pressing > 0.0:
+            state = SLIDES
+            if ti.static(self.friction > 0.0):
+                # Coulomb on impulses: the tangential velocity change is at most friction x the normal one
+                tangent, limit = v, self.friction * ti.max(pressing, 0.0)
+                tangent[self.axis] = 0.0
+                slip = tangent.norm(1e-30)
+                if slip <= limit:
+                    state = STICKS
+                held -= tangent * ti.min(1.0, limit / slip)
+        if state != FREE:
+            held[self.axis] = normal
+        return held, state
+
+    @ti.func
+    def keep(self, v, factor, state):
+        held = v
         if ti.static(self.bonded):
             held = ti.Vector.zero(float, v.n)
-        elif ti.static(self.friction > 0.0):
-            # Coulomb on impulses: the tangential velocity change is at most friction x the normal one
-            tangent = v
-            tangent[self.axis] = 0.0
-            slip = tangent.norm(1e-30)
-            held -= tangent * ti.min(1.0, self.friction * abs(normal - v[self.axis]) / slip)
-        held[self.axis] = normal
+        if ti.static(self.friction > 0.0):
+            if state == STICKS:
+                held = ti.Vector.zero(float, v.n)
+        if ti.static(not self.unilateral) or state != FREE:
+            held[self.axis] = self.speed * factor
         return held
 
 
@@ -81,20 +119,26 @@ class Platen:
 @checked("wall")
 @dataclass(frozen=True, kw_only=True)
 class Wall:
-    """A fixed frictionless plane: normal velocity 0."""
+    """A mirror plane: normal velocity 0, no friction. It holds both ways; a wall that pushes alone is a `Platen` of
+    speed 0."""
 
     axis: Axis
     side: Side
     position: Coordinate
 
     speed = 0.0
+    unilateral = False
 
     @ti.func
     def holds(self, x, dx):
         return beyond(x, dx, self.axis, self.side, self.position)
 
     @ti.func
-    def project(self, v, factor):
+    def project(self, v, factor, squeeze):
+        return self.keep(v, factor, STICKS), STICKS
+
+    @ti.func
+    def keep(self, v, factor, state):
         held = v
         held[self.axis] = 0.0
         return held
@@ -111,11 +155,16 @@ class Fixed:
     position: Coordinate
 
     speed = 0.0
+    unilateral = False
 
     @ti.func
     def holds(self, x, dx):
         return beyond(x, dx, self.axis, self.side, self.position)
 
     @ti.func
-    def project(self, v, factor):
+    def project(self, v, factor, squeeze):
+        return 0.0 * v, STICKS
+
+    @ti.func
+    def keep(self, v, factor, state):
         return 0.0 * v

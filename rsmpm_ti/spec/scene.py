@@ -167,6 +167,18 @@ class Loading:
         """What is measured, complete; None where there is no axis along which to measure."""
         return self.cell.filled(self)
 
+    def side_speeds(self, dim: int) -> tuple[tuple[float, float], ...]:
+        """Speed [m/s] of what bounds each axis below and above; of a side without boundary, the other's."""
+
+        def of_side(axis: int, side: str) -> set[float]:
+            return {float(b.speed) for b in self.boundaries if (b.axis, b.side) == (axis, side)}
+
+        found = []
+        for axis in range(dim):
+            lower, upper = of_side(axis, "lower"), of_side(axis, "upper")
+            found.append((next(iter(lower or upper or {0.0})), next(iter(upper or lower or {0.0}))))
+        return tuple(found)
+
     @property
     def height(self) -> float:
         """Distance between the platens [m]."""

@@ -130,6 +130,7 @@ def check_loading(scene) -> None:
             allowed = f"on a plane of grid nodes along axis {boundary.axis}"
             nearest = f"the nearest is {domain.lower[boundary.axis] + round(cells) * domain.dx:.9g} m"
             raise refuse(f"boundaries[{k}].position", boundary.position, allowed, nearest)
+    _check_sides(loading)
     _check_load_cell(scene)
     if scene.schedule.strain_end is not None or isinstance(loading.start, Affine):
         if loading.platens is None:
@@ -150,6 +151,29 @@ def check_loading(scene) -> None:
         if transits < MIN_TRANSITS * (1.0 - 1e-9):
             least = f"at least {MIN_TRANSITS * loading.height / scene.wave_speed:.4g} s, 5 wave transits"
             raise refuse("start.time", loading.start.time, least)
+
+
+def _check_sides(loading) -> None:
+    """The grid follows what bounds it, and it can follow one motion of one plane on a side of an axis."""
+    for k, boundary in enumerate(loading.boundaries):
+        beside = [b for b in loading.boundaries[:k] if (b.axis, b.side) == (boundary.axis, boundary.side)]
+        for other in beside:
+            if other.speed != boundary.speed:
+                allowed = f"{other.speed} m/s, that of the boundary beside it on the {boundary.side} side"
+                remedy = "the grid goes with the platens: one side, one motion; leave a gap in place of one at rest"
+                raise refuse(f"boundaries[{k}].speed", boundary.speed, allowed, remedy)
+            if boundary.speed and other.position != boundary.position:
+                allowed = f"{other.position} m, that of the boundary beside it, which moves with it"
+                raise refuse(f"boundaries[{k}].position", boundary.position, allowed, "or let the other side move")
+        if _pulls_away(loading, boundary):
+            remedy = "it only pushes: set pulls = True (glued, free to move laterally) or bonded = True"
+            raise refuse(f"boundaries[{k}].speed", boundary.speed, "towards the other platen", remedy)
+
+
+def _pulls_away(loading, boundary) -> bool:
+    """Whether a platen that only pushes leaves the specimen from the start on."""
+    pair = loading.platens
+    return pair is not None and boundary in pair and boundary.unilateral and loading.strain_rate < 0.0
 
 
 def _check_load_cell(scene) -> None:

@@ -221,7 +221,7 @@ def test_tensor_products(taichi_real, width, dim):
                 value[k, d], slope[k, d] = a[p, 0, k, d], a[p, 1, k, d]
             for k, offset in ti.static(enumerate(stencil)):
                 w[p, k] = tensor_weight(value, offset)
-                gradient = tensor_gradient(value, slope, offset, inv_dx)
+                gradient = tensor_gradient(value, inv_dx * slope, offset)
                 for d in ti.static(range(dim)):
                     g[p, k, d] = gradient[d]
 

@@ -208,8 +208,8 @@ def test_open_crack_is_dry():
     size = (2 * DX, 7 * DX)
     walls = tuple(Wall(axis=0, side=side, position=x) for side, x in (("lower", 0.0), ("upper", size[0])))
     platens = (
-        Platen(axis=1, side="lower", position=0.0, speed=-0.05),
-        Platen(axis=1, side="upper", position=size[1], speed=0.05),
+        Platen(axis=1, side="lower", position=0.0, speed=-0.05, pulls=True),
+        Platen(axis=1, side="upper", position=size[1], speed=0.05, pulls=True),
     )
     start = Ramp(time=20 * size[1] / C_P)
     loading = Loading(boundaries=(*platens, *walls), start=start, width=size[0], confinement=P)

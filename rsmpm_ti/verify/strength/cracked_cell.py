@@ -79,7 +79,7 @@ def between_walls(law: Directional) -> Cell:
                 Wall(axis=0, side="lower", position=0.0),
                 Wall(axis=0, side="upper", position=BAND),
                 Wall(axis=1, side="lower", position=0.0),
-                Platen(axis=1, side="upper", position=BAND, speed=SPEED),
+                Platen(axis=1, side="upper", position=BAND, speed=SPEED, pulls=True),
             ),
             start=ThereAndBack(dt=dt, wide=wide),
         ),

@@ -46,7 +46,7 @@ def cell_path() -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray, Rock]:
                 Wall(axis=0, side="lower", position=0.0),
                 Wall(axis=0, side="upper", position=EDGE),
                 Wall(axis=1, side="lower", position=0.0),
-                Platen(axis=1, side="upper", position=EDGE, speed=SPEED),
+                Platen(axis=1, side="upper", position=EDGE, speed=SPEED, pulls=True),
             ),
             start=PullThenPush(time=STEPS * dt),
         ),

@@ -85,8 +85,8 @@ def strips(each: int) -> Scene:
         rock=rock,
         loading=Loading(
             boundaries=(
-                Platen(axis=1, side="lower", position=0.0, speed=-speed),
-                Platen(axis=1, side="upper", position=height, speed=speed),
+                Platen(axis=1, side="lower", position=0.0, speed=-speed, pulls=True),
+                Platen(axis=1, side="upper", position=height, speed=speed, pulls=True),
             ),
             start=Affine(),
             width=float(width.sum()) * DX,
