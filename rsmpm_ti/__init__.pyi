@@ -46,6 +46,7 @@ from .spec.loader import load_scene as load_scene
 from .spec.loading_start import Affine as Affine
 from .spec.loading_start import AtRest as AtRest
 from .spec.loading_start import Press as Press
+from .spec.loading_start import Program as Program
 from .spec.loading_start import Ramp as Ramp
 from .spec.regions import Box as Box
 from .spec.regions import Difference as Difference

@@ -38,6 +38,7 @@ Velocity = Annotated[float, Unit("m/s")]
 Acceleration = Annotated[float, Unit("m/s^2")]
 Spin = Annotated[float, Unit("rad/s")]
 Pressure = Annotated[float, Unit("Pa")]
+ForceOrLineLoad = Annotated[float, Unit("N/m or N")]
 Density = Annotated[float, Unit("kg/m^3")]
 FractureEnergy = Annotated[float, Unit("J/m^2")]
 

@@ -55,7 +55,8 @@ GIVEN = {
     "position": 0.1, "radius": 0.01, "side": "upper", "speed": -2.5e-3, "time": 2e-3, "title": "a", "width": 6e-3,
     "upper": (0.04, 0.08), "E": 17e9, "density": 2600.0, "cohesion": 6e6, "friction_angle": 40.0, "shape": 6.0,
     "tensile_strength": 2e6, "reference_volume": 1e-5, "G_f_I": 5.0, "G_f_II": 24.0, "tension_limit": 1.0,
-    "compression_limit": 1e9, "parts": (Box(lower=(0.01, 0.02), upper=(0.04, 0.08)),),
+    "compression_limit": 1e9, "times": (1e-3, 2e-3), "factors": (1.0, 0.5),
+    "parts": (Box(lower=(0.01, 0.02), upper=(0.04, 0.08)),),
 }  # fmt: skip
 """A good value for every field without a default, by its name."""
 

@@ -3,6 +3,7 @@
 import numpy as np
 import taichi as ti
 
+from rsmpm_ti.fields.side_motion import held_sides, side_speeds
 from rsmpm_ti.spec.scene import MARGIN, Scene
 
 NO_WALL = -(10**6)
@@ -51,17 +52,25 @@ class Grid:
             for rows, step in ((lower, 1), (upper, -1))
             if folded and abs(rows[d]) != -NO_WALL
         )
-        self.speeds = scene.loading.side_speeds(dim)
-        self.followed = tuple(d for d in range(dim) if any(self.speeds[d]))
+        self.speeds = side_speeds(scene)
+        self.held = held_sides(scene)
+        self.followed = tuple(d for d in range(dim) if any(self.speeds[d]) or d in {side.axis for side in self.held})
         # of an axis with one boundary the other side goes with it
         self.rows = tuple(
             tuple(own if abs(own) != -NO_WALL else other + step for own, other, step in ((low, up, -1), (up, low, 1)))
             for low, up in zip(lower, upper, strict=True)
         )
         self.travel = ti.field(ti.f64, (dim, 2))  # of each side since the start [m]
+        self.velocity = ti.field(ti.f64, (dim, 2))  # of sides that a force moves [m/s]
+        self._answered = ti.field(ti.f64, (dim, 2))  # impulse that such a side has given the bodies so far [N s]
         self._now, self._start = ti.field(ti.f64, (dim, 3)), ti.field(ti.f64, (dim, 3))
+        self.begin()
+
+    def begin(self) -> None:
+        """Everything as it is at the start."""
         at_rest = np.array([(origin, self.inv_dx, self.dx) for origin in self.origin])
-        self.resume({"grid_travel": np.zeros((dim, 2)), "grid_frame": at_rest})
+        nothing = {f"grid_{name}": np.zeros((self.dim, 2)) for name in ("travel", "velocity", "answered")}
+        self.resume(nothing | {"grid_frame": at_rest})
 
     def row(self, boundary) -> int:
         """Number of a boundary's plane of nodes along its axis."""
@@ -73,17 +82,40 @@ class Grid:
 
     def state(self) -> dict[str, np.ndarray]:
         """Between two steps: how far each side has gone [m], [dim, 2], and the frame, [dim, 3], to the last bit."""
-        return {"grid_travel": self.travel.to_numpy(), "grid_frame": self._now.to_numpy()}
+        return {f"grid_{name}": field.to_numpy() for name, field in self._kept.items()}
 
     def resume(self, state: dict[str, np.ndarray]) -> None:
-        self.travel.from_numpy(state["grid_travel"])
-        for field in (self._now, self._start):
-            field.from_numpy(state["grid_frame"])
+        for name, field in self._kept.items():
+            field.from_numpy(state[f"grid_{name}"])
+        self._start.from_numpy(state["grid_frame"])
+
+    @property
+    def _kept(self) -> dict:
+        return {"travel": self.travel, "velocity": self.velocity, "answered": self._answered, "frame": self._now}
 
     @property
     def fastest(self) -> float:
-        """Largest speed of a side at full speed [m/s]."""
-        return max(abs(speed) for axis in self.speeds for speed in axis)
+        """Largest speed of a side, at full speed or now [m/s]."""
+        speed = max(abs(speed) for axis in self.speeds for speed in axis)
+        return max(speed, float(np.abs(self.velocity.to_numpy()).max())) if self.held else speed
+
+    @property
+    def quickest(self) -> float:
+        """Largest acceleration that a force gives a side which meets nothing [m/s^2]."""
+        return max((abs(side.force) / side.mass for side in self.held), default=0.0)
+
+    @ti.func
+    def push(self, impulse: ti.template(), dt, factor):
+        """Sides that a force moves: what it adds to their momentum, less what the bodies took since the step before.
+
+        impulse: of each boundary on the bodies so far [N s].
+        """
+        for held in ti.static(self.held):
+            given = impulse[held.boundary][held.axis]
+            pushed = held.force * ti.cast(factor, ti.f64) * ti.cast(dt, ti.f64)
+            change = pushed - (given - self._answered[held.axis, held.side])
+            self.velocity[held.axis, held.side] = self.velocity[held.axis, held.side] + change / held.mass
+            self._answered[held.axis, held.side] = given
 
     @ti.func
     def move(self, dt, factor):
@@ -91,7 +123,7 @@ class Grid:
         for d in ti.static(self.followed):
             for side in ti.static(range(2)):
                 way = ti.cast(ti.static(self.speeds[d][side]), ti.f64) * ti.cast(factor, ti.f64) * ti.cast(dt, ti.f64)
-                self.travel[d, side] = self.travel[d, side] + way
+                self.travel[d, side] = self.travel[d, side] + way + self.velocity[d, side] * ti.cast(dt, ti.f64)
             for column in ti.static(range(3)):
                 self._start[d, column] = self._now[d, column]
             rows = ti.static(self.rows[d])

@@ -34,9 +34,15 @@ def stable_cfl(scene) -> float:
     return min(limit, USL_CFL) if scene.order == "usl" else limit
 
 
+HELD_STRAIN = 0.1
+"""What a platen that a force moves may squeeze a specimen by, so that steps suit the grid that goes with it."""
+
+
 def smallest_spacing(scene) -> float:
     """Of nodes in a run [m]: the grid goes with the platens, and shrinks as they come closer."""
     loading = scene.loading
+    if any(boundary.held for boundary in loading.boundaries):
+        return (1.0 - HELD_STRAIN) * scene.domain.dx
     if loading.platens is None or not loading.strain_rate > 0.0:
         return scene.domain.dx
     strain = scene.schedule.strain_end or loading.strain_rate * scene.t_end

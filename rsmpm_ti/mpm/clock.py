@@ -19,8 +19,7 @@ class Clock:
         self.dt, self.total = scene.dt, scene.steps
         self.end = scene.t_end if scene.schedule.adaptive else self.total * self.dt  # [s]
         self.factor = scene.loading.start.factor
-        self.strain_rate = scene.loading.strain_rate if scene.loading.platens else math.nan
-        self.step, self.strain = 0, 0.0
+        self.step = 0
         self._since = 0, 0.0  # step and time at which steps of this length began
 
     @property
@@ -32,6 +31,15 @@ class Clock:
         return start + (step - first) * self.dt
 
     @property
+    def strain(self) -> float:
+        """How far the platens have come closer, over their distance; NaN without a pair of them."""
+        pair = self._sim.scene.loading.platens
+        if pair is None:
+            return math.nan
+        lower, upper = self._sim.grid.travel.to_numpy()[pair[0].axis]
+        return float(lower - upper) / self._sim.scene.loading.height
+
+    @property
     def fraction(self) -> float:
         """Of the run that is done, 0 to 1."""
         return min(1.0, self.time / self.end)
@@ -40,10 +48,10 @@ class Clock:
         """What `resume` needs to go on where this clock is."""
         first, since = self._since
         state = {"step": self.step, "total": self.total, "first": first}
-        return state | {"strain": self.strain, "dt": self.dt, "since": since}
+        return state | {"dt": self.dt, "since": since}
 
     def resume(self, state: dict[str, float]) -> None:
-        self.step, self.strain, self.dt = int(state["step"]), float(state["strain"]), float(state["dt"])
+        self.step, self.dt = int(state["step"]), float(state["dt"])
         self.total, self._since = int(state["total"]), (int(state["first"]), float(state["since"]))
 
     @property
@@ -65,7 +73,6 @@ class Clock:
                 chunk = min(chunk, (-self.step) % interval + 1)
             factors = [self.factor(self._time_of(self.step + k + 0.5)) for k in range(chunk)]
             self._pass_list(self._sim, self.dt, self.time, factors)
-            self.strain += sum(factors) * self.strain_rate * self.dt
             self.step += chunk
             if self._sim.is_nonlocal and (self.step - 1) % self._sim.nonlocal_sums.interval == 0:
                 track_cracks(self._sim, self.time)

@@ -45,12 +45,22 @@ def clear_nodes(sim: ti.template()):
 
 
 @ti.func
+def speed_of(sim: ti.template(), b: ti.template(), factor):
+    """Of a boundary along its axis, now [m/s]."""
+    speed = sim.boundaries[b].speed * factor
+    for held in ti.static(sim.grid.held):
+        if ti.static(held.boundary == b):
+            speed = ti.cast(sim.grid.velocity[held.axis, held.side], float)
+    return speed
+
+
+@ti.func
 def hold(sim: ti.template(), i, v, factor):
     """Velocity mapped apart from force, after every boundary that holds the node: as the node was held last."""
     held = v
     for b, boundary in ti.static(enumerate(sim.boundaries)):
         if boundary.holds(sim.grid.label(i), sim.grid.dx):
-            held = boundary.keep(held, factor, kept_state(sim, b, i))
+            held = boundary.keep(held, speed_of(sim, b, factor), factor, kept_state(sim, b, i))
     return held
 
 
@@ -109,7 +119,7 @@ def accelerate(sim: ti.template(), i, velocity: ti.template(), dt, factor):
             if boundary.holds(sim.grid.label(i), sim.grid.dx):
                 held, state = v, 0
                 if touching(sim, b, i):
-                    held, state = boundary.project(v, factor, squeeze(sim, dt))
+                    held, state = boundary.project(v, speed_of(sim, b, factor), factor, squeeze(sim, dt))
                 keep_state(sim, b, i, state)
                 impulse = ti.cast(m * (held - v), ti.f64)
                 work = impulse.dot(ti.cast(held, ti.f64))
@@ -158,6 +168,7 @@ def move_grid(sim: ti.template(), dt: float, factor: float):
     """To where platens are after a step. Not for musl, which begins the next step in this one's last pass."""
     for _ in range(1):
         sim.grid.move(dt, factor)
+        sim.grid.push(sim.ledger.impulse, dt, factor)
         sim.grid.settle()
 
 

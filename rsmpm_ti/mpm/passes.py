@@ -88,6 +88,7 @@ def g2p(sim: ti.template(), what: ti.template(), dt: float, time: ti.f64, ticket
 def musl_step(sim: ti.template(), what: ti.template(), dt: float, factor: float, time: ti.f64, ticket: int):
     """A whole step: one launch instead of four, each of which costs 0.1 ms. Takes two tickets."""
     for _ in range(1):
+        sim.grid.push(sim.ledger.impulse, dt, factor)
         sim.grid.move(dt, factor)
     new_velocity(sim, update_node_and_clear, sim.nodes.momentum_columns, dt, factor)
     over_particles(sim, remap_span, what, dt, time, ticket)

@@ -69,8 +69,10 @@ class Drive:
     def _chunk(self, most: int) -> int:
         """Take steps, at most so many, look at the particles, and sort them if they need it; how many were taken."""
         # particles against nodes, which go at most as fast as the platens
-        travel = max((self.survey.speed + self.sim.grid.fastest) * self.clock.dt, 1e-30)
-        chunk = min(most, max(1, math.floor(SAFE_CELLS * self.sim.grid.dx / travel)))
+        speed, way = max(self.survey.speed + self.sim.grid.fastest, 1e-30), SAFE_CELLS * self.sim.grid.dx
+        # way = speed t + quickest t^2/2, solved so that no difference of near numbers is taken
+        time = 2.0 * way / (speed + math.sqrt(speed**2 + 2.0 * self.sim.grid.quickest * way))
+        chunk = min(most, max(1, math.floor(time / self.clock.dt)))
         self.clock.advance(chunk)
         self.survey = survey(self.sim)
         if self.survey.outside and not self.survey.sick:

@@ -3,9 +3,11 @@
 A boundary holds every node on its plane and beyond it, known by where they were at the start: the grid goes with the
 boundaries (`fields/grid.py`). `factor` is the start ramp, 0 to 1.
 
-`project(v, factor, squeeze)` takes the velocity that a node has after the forces of a step and gives the held one and
-what the node then does, FREE, SLIDES or STICKS. squeeze: what the confining pressure alone would take from it [m/s].
-`keep(v, factor, state)` holds a velocity that is mapped to the node in the same step without forces, as `project` did.
+`project(v, speed, factor, squeeze)` takes the velocity that a node has after the forces of a step and gives the held
+one and what the node then does, FREE, SLIDES or STICKS. speed: the boundary's own along its axis, now [m/s]; squeeze:
+what the confining pressure alone would take from the node [m/s].
+`keep(v, speed, factor, state)` holds a velocity that is mapped to the node in the same step without forces, as
+`project` did.
 `unilateral`: whether it acts only on rock that touches the plane (`mpm/contact.py`).
 """
 
@@ -18,7 +20,7 @@ from annotated_types import Interval
 from rsmpm_ti.checks import Finite, Remedy, checked
 from rsmpm_ti.errors import refuse
 from rsmpm_ti.spec.regions import Coordinate
-from rsmpm_ti.units import Velocity
+from rsmpm_ti.units import ForceOrLineLoad, Pressure, Velocity
 
 MAX_FRICTION = 1e3
 """Largest friction coefficient: nothing slips long before."""
@@ -49,12 +51,18 @@ class Platen:
     limited by Coulomb `friction` on what presses, the confining pressure included, or none: `bonded` holds both ways
     and in every direction. `span` limits the plate to an interval [m] of the first lateral axis: the arc of a
     Brazilian test.
+
+    With a `force` [N] (per metre of thickness in 2D) or a nominal `stress` [Pa], the force over `loading.width`, in
+    place of a speed it is pushed towards the bodies by `factor` times as much and goes as fast as they let it
+    (`fields/side_motion.py`). Confinement is not part of it. With pulls or bonded it may be negative, and pull.
     """
 
     axis: Axis
     side: Side
     position: Coordinate
-    speed: Annotated[Velocity, Finite]
+    speed: Annotated[Velocity, Finite] = 0.0
+    force: Annotated[ForceOrLineLoad, Finite] | None = None
+    stress: Annotated[Pressure, Finite] | None = None
     friction: Annotated[float, Interval(ge=0.0, le=MAX_FRICTION), Remedy("or set bonded")] = 0.0
     bonded: bool = False
     pulls: bool = False
@@ -63,10 +71,23 @@ class Platen:
     def __post_init__(self):
         if self.span is not None and not self.span[0] < self.span[1]:
             raise refuse("platen.span", self.span, "an interval with its lower end first, in metres")
+        given = {name: getattr(self, name) for name in ("force", "stress") if getattr(self, name) is not None}
+        if len(given) + (self.speed != 0.0) > 1:
+            name = "speed" if self.speed else "stress"
+            raise refuse(f"platen.{name}", getattr(self, name), "left out", "a platen has a speed, a force or a stress")
+        for name, value in given.items():
+            if value < 0.0 and self.unilateral:
+                remedy = "it only pushes: set pulls = True or bonded = True"
+                raise refuse(f"platen.{name}", value, "positive: it presses on the bodies", remedy)
 
     @property
     def limited(self) -> bool:
         return self.span is not None
+
+    @property
+    def held(self) -> bool:
+        """Whether a force moves it."""
+        return self.force is not None or self.stress is not None
 
     @property
     def unilateral(self) -> bool:
@@ -82,10 +103,10 @@ class Platen:
         return held
 
     @ti.func
-    def project(self, v, factor, squeeze):
-        held, state, normal = v, FREE, self.speed * factor
+    def project(self, v, speed, factor, squeeze):
+        held, state = v, FREE
         outward = ti.static(1.0 if self.side == "upper" else -1.0)
-        pressing = outward * (v[self.axis] - normal) + squeeze  # impulse by which the platen pushes, over the mass
+        pressing = outward * (v[self.axis] - speed) + squeeze  # impulse by which the platen pushes, over the mass
         if ti.static(self.bonded):
             held, state = ti.Vector.zero(float, v.n), STICKS
         elif ti.static(self.pulls) or pressing > 0.0:
@@ -99,11 +120,11 @@ class Platen:
                     state = STICKS
                 held -= tangent * ti.min(1.0, limit / slip)
         if state != FREE:
-            held[self.axis] = normal
+            held[self.axis] = speed
         return held, state
 
     @ti.func
-    def keep(self, v, factor, state):
+    def keep(self, v, speed, factor, state):
         held = v
         if ti.static(self.bonded):
             held = ti.Vector.zero(float, v.n)
@@ -111,7 +132,7 @@ class Platen:
             if state == STICKS:
                 held = ti.Vector.zero(float, v.n)
         if ti.static(not self.unilateral) or state != FREE:
-            held[self.axis] = self.speed * factor
+            held[self.axis] = speed
         return held
 
 
@@ -127,18 +148,18 @@ class Wall:
     position: Coordinate
 
     speed = 0.0
-    unilateral = False
+    held = unilateral = False
 
     @ti.func
     def holds(self, x, dx):
         return beyond(x, dx, self.axis, self.side, self.position)
 
     @ti.func
-    def project(self, v, factor, squeeze):
-        return self.keep(v, factor, STICKS), STICKS
+    def project(self, v, speed, factor, squeeze):
+        return self.keep(v, speed, factor, STICKS), STICKS
 
     @ti.func
-    def keep(self, v, factor, state):
+    def keep(self, v, speed, factor, state):
         held = v
         held[self.axis] = 0.0
         return held
@@ -155,16 +176,16 @@ class Fixed:
     position: Coordinate
 
     speed = 0.0
-    unilateral = False
+    held = unilateral = False
 
     @ti.func
     def holds(self, x, dx):
         return beyond(x, dx, self.axis, self.side, self.position)
 
     @ti.func
-    def project(self, v, factor, squeeze):
+    def project(self, v, speed, factor, squeeze):
         return 0.0 * v, STICKS
 
     @ti.func
-    def keep(self, v, factor, state):
+    def keep(self, v, speed, factor, state):
         return 0.0 * v

@@ -1,5 +1,8 @@
-"""How a scene starts, and with it how fast its platens move: `factor` is their speed over the full one. NumPy-free."""
+"""How a scene starts, and with it how fast its platens move: `factor` is their speed, or
+force, over the full one. NumPy-free."""
 
+import bisect
+import itertools
 import math
 from dataclasses import dataclass
 from typing import Annotated
@@ -7,6 +10,7 @@ from typing import Annotated
 from annotated_types import Interval
 
 from rsmpm_ti.checks import MAX_SIZE, checked
+from rsmpm_ti.errors import refuse
 from rsmpm_ti.units import Time
 
 Duration = Annotated[Time, Interval(ge=1e-18, le=MAX_SIZE)]
@@ -57,6 +61,32 @@ class Press:
 
     def factor(self, time: float) -> float:
         return math.sin(math.pi * time / self.time) ** 2 if time < self.time else 0.0
+
+
+@checked("start")
+@dataclass(frozen=True, kw_only=True)
+class Program:
+    """Start at rest and follow a table: at `times` [s] platens have `factors` of their speed, force or stress.
+
+    Between them linear, after the last the last. Load, hold and unload: forces take factors such as (0, 1, 1, 0).
+    """
+
+    times: tuple[Duration, ...]
+    factors: tuple[Annotated[float, Interval(ge=-1e3, le=1e3)], ...]
+
+    def __post_init__(self):
+        if not self.times or any(b <= a for a, b in itertools.pairwise(self.times)):
+            raise refuse("start.times", self.times, "times that grow, at least one")
+        if len(self.factors) != len(self.times):
+            raise refuse("start.factors", self.factors, f"{len(self.times)} numbers, one for each of start.times")
+
+    def factor(self, time: float) -> float:
+        times, factors = (0.0, *self.times), (0.0, *self.factors)
+        k = bisect.bisect_right(times, time)
+        if k == len(times):
+            return factors[-1]
+        part = (time - times[k - 1]) / (times[k] - times[k - 1])
+        return factors[k - 1] + part * (factors[k] - factors[k - 1])
 
 
 @checked("start")

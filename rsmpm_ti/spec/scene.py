@@ -22,7 +22,7 @@ from rsmpm_ti.rock.rock import Rock
 from rsmpm_ti.spec.boundaries import Fixed, Platen, Wall
 from rsmpm_ti.spec.confinement import check_confined_rock
 from rsmpm_ti.spec.load_cell import LoadCell
-from rsmpm_ti.spec.loading_start import Affine, AtRest, Press, Ramp
+from rsmpm_ti.spec.loading_start import Affine, AtRest, Press, Program, Ramp
 from rsmpm_ti.spec.mass_scaling import MAX_TIME_SCALE, estimate
 from rsmpm_ti.spec.regions import MAX_COORDINATE, Position, Region, slits_of
 from rsmpm_ti.spec.scene_checks import check_bodies, check_cracks, check_loading, check_memory, check_motion
@@ -139,7 +139,7 @@ class Loading:
         Len(0, MAX_BOUNDARIES),
         Remedy("every kernel holds code for each"),
     ] = ()
-    start: Annotated[Affine | Ramp | Press | AtRest, ByType] = AtRest()
+    start: Annotated[Affine | Ramp | Press | Program | AtRest, ByType] = AtRest()
     time_scale: TimeScale = 1.0
     quasi_static: Annotated[float, Interval(ge=1e-6, le=1.0), Remedy("it is a fraction of the load")] = 0.01
     body_force: tuple[Annotated[Acceleration, Finite], ...] | None = None
@@ -166,18 +166,6 @@ class Loading:
     def load_cell(self) -> LoadCell | None:
         """What is measured, complete; None where there is no axis along which to measure."""
         return self.cell.filled(self)
-
-    def side_speeds(self, dim: int) -> tuple[tuple[float, float], ...]:
-        """Speed [m/s] of what bounds each axis below and above; of a side without boundary, the other's."""
-
-        def of_side(axis: int, side: str) -> set[float]:
-            return {float(b.speed) for b in self.boundaries if (b.axis, b.side) == (axis, side)}
-
-        found = []
-        for axis in range(dim):
-            lower, upper = of_side(axis, "lower"), of_side(axis, "upper")
-            found.append((next(iter(lower or upper or {0.0})), next(iter(upper or lower or {0.0}))))
-        return tuple(found)
 
     @property
     def height(self) -> float:

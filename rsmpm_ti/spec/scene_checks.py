@@ -14,7 +14,7 @@ from rsmpm_ti.method.shape import Gimp
 from rsmpm_ti.method.time_step import MAX_COUNT
 from rsmpm_ti.rock.after_failure import check_law
 from rsmpm_ti.rock.tensors import PACKED_LENGTH
-from rsmpm_ti.spec.loading_start import Affine, Press, Ramp
+from rsmpm_ti.spec.loading_start import Affine, Press, Program, Ramp
 from rsmpm_ti.spec.mass_scaling import MIN_TRANSITS
 
 MAX_TRAVEL = 0.4
@@ -130,7 +130,6 @@ def check_loading(scene) -> None:
             allowed = f"on a plane of grid nodes along axis {boundary.axis}"
             nearest = f"the nearest is {domain.lower[boundary.axis] + round(cells) * domain.dx:.9g} m"
             raise refuse(f"boundaries[{k}].position", boundary.position, allowed, nearest)
-    _check_sides(loading)
     _check_load_cell(scene)
     if scene.schedule.strain_end is not None or isinstance(loading.start, Affine):
         if loading.platens is None:
@@ -141,16 +140,19 @@ def check_loading(scene) -> None:
     if loading.platens and not loading.height > 0.0:
         upper = loading.boundaries.index(loading.platens[1])
         raise refuse(f"boundaries[{upper}].position", loading.platens[1].position, "above the lower platen's")
+    _check_held(scene)
     if scene.schedule.strain_end is not None and not loading.strain_rate * scene.schedule.strain_end > 0.0:
         sign = f"of the sign of the platens' strain rate, lower speed less upper speed, {loading.strain_rate:.6g} 1/s"
         raise refuse("schedule.strain_end", scene.schedule.strain_end, sign)
-    if isinstance(loading.start, Press) and scene.schedule.strain_end is not None:
-        raise SceneError("start = Press stops the platens itself: give t_end, hold included, no strain_end")
+    if isinstance(loading.start, (Press, Program)) and scene.schedule.strain_end is not None:
+        name = type(loading.start).__name__
+        raise SceneError(f"start = {name} stops the platens itself: give t_end, hold included, no strain_end")
     if isinstance(loading.start, (Ramp, Press)) and loading.platens:
         transits = loading.start.time * scene.wave_speed / loading.height
         if transits < MIN_TRANSITS * (1.0 - 1e-9):
             least = f"at least {MIN_TRANSITS * loading.height / scene.wave_speed:.4g} s, 5 wave transits"
             raise refuse("start.time", loading.start.time, least)
+    _check_sides(loading)
 
 
 def _check_sides(loading) -> None:
@@ -158,6 +160,9 @@ def _check_sides(loading) -> None:
     for k, boundary in enumerate(loading.boundaries):
         beside = [b for b in loading.boundaries[:k] if (b.axis, b.side) == (boundary.axis, boundary.side)]
         for other in beside:
+            if other.held or boundary.held:
+                allowed = "alone on its side"
+                raise refuse(f"boundaries[{k}]", boundary, allowed, "a force moves a whole side, the grid with it")
             if other.speed != boundary.speed:
                 allowed = f"{other.speed} m/s, that of the boundary beside it on the {boundary.side} side"
                 remedy = "the grid goes with the platens: one side, one motion; leave a gap in place of one at rest"
@@ -168,6 +173,15 @@ def _check_sides(loading) -> None:
         if _pulls_away(loading, boundary):
             remedy = "it only pushes: set pulls = True (glued, free to move laterally) or bonded = True"
             raise refuse(f"boundaries[{k}].speed", boundary.speed, "towards the other platen", remedy)
+
+
+def _check_held(scene) -> None:
+    loading = scene.loading
+    for k, boundary in enumerate(loading.boundaries):
+        if boundary.held and loading.width is None:
+            raise SceneError("loading.width is missing: the mass of a platen that a force moves follows from it")
+        if boundary.held and scene.schedule.strain_end is not None:
+            raise SceneError(f"boundaries[{k}] is moved by a force, so strain_end may never come: give t_end")
 
 
 def _pulls_away(loading, boundary) -> bool:

@@ -1,0 +1,125 @@
+"""Platens in a run: moved by a force or by a table, on two axes at once, and what they cannot be."""
+
+import math
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from rsmpm_ti import (
+    Affine,
+    Body,
+    Box,
+    BulkViscosity,
+    Domain,
+    Hooke,
+    Loading,
+    Platen,
+    Program,
+    Rock,
+    Scene,
+    SceneError,
+    Schedule,
+    Unbreakable,
+    simulate,
+)
+from rsmpm_ti.analysis.load_curve import loading_curve
+
+E, NU, DENSITY, DX, SIDE = 17e9, 0.14, 2600.0, 2e-3, 20e-3
+MODULUS = E / (1.0 - NU**2)
+TRANSIT = SIDE / math.sqrt(MODULUS / DENSITY)
+
+
+def block(boundaries, schedule: Schedule, **loading) -> Scene:
+    """A square block that its boundaries touch, with three empty cells around it where there are none."""
+    free = tuple(0.0 if d in {b.axis for b in boundaries} else 3.0 * DX for d in range(2))
+    return Scene(
+        title="block",
+        domain=Domain(lower=tuple(-f for f in free), upper=tuple(SIDE + f for f in free), dx=DX),
+        bodies=(Body(region=Box(lower=(0.0, 0.0), upper=(SIDE, SIDE))),),
+        rock=Rock(
+            density=DENSITY,
+            elasticity=Hooke(E=E, nu=NU),
+            criterion=Unbreakable(),
+            viscosity=BulkViscosity(),
+        ),
+        loading=Loading(boundaries=boundaries, width=SIDE, **loading),
+        schedule=schedule,
+    )
+
+
+def pair(axis: int = 1, **upper) -> tuple[Platen, Platen]:
+    return Platen(axis=axis, side="lower", position=0.0), Platen(axis=axis, side="upper", position=SIDE, **upper)
+
+
+@pytest.mark.parametrize(
+    ("axis", "held", "confinement"),
+    [(1, {"stress": 10e6}, 0.0), (0, {"force": 10e6 * SIDE}, 0.0), (1, {"stress": 10e6}, 20e6)],
+)
+def test_a_platen_that_a_force_moves_makes_the_stress_and_strain_of_the_force(axis, held, confinement):
+    """Pressed during forty transits and held for forty: what still swings is 2 % and has no mean."""
+    program = Program(times=(40.0 * TRANSIT,), factors=(1.0,))
+    scene = block(pair(axis, **held), Schedule(t_end=80.0 * TRANSIT), start=program, confinement=confinement)
+    middle, stress, strain = loading_curve(simulate(scene, threads=1).history)
+    holding = middle > 50.0 * TRANSIT
+    assert stress[holding].mean() - confinement == pytest.approx(10e6, rel=2e-3)
+    assert strain[holding].mean() == pytest.approx(10e6 / MODULUS, rel=2e-3)
+    assert np.interp(20.0 * TRANSIT, middle, stress) - confinement == pytest.approx(5e6, rel=0.05)
+
+
+def test_a_table_loads_holds_and_unloads():
+    program = Program(times=(1.0, 2.0, 4.0), factors=(1.0, 1.0, -0.5))
+    assert [program.factor(t) for t in (0.0, 0.25, 1.0, 1.7, 3.0, 4.0, 9.0)] == [0.0, 0.25, 1.0, 1.0, 0.25, -0.5, -0.5]
+
+
+def test_platens_on_two_axes_strain_uniformly():
+    """Equal squeeze of both: sigma = (lambda + mu) 2 ln(1 - strain), in plane strain, the same in every particle."""
+    strain, speed = 0.01, 0.2
+    platens = tuple(
+        Platen(axis=axis, side=side, position=at, speed=v)
+        for axis in (0, 1)
+        for side, at, v in (("lower", 0.0, speed), ("upper", SIDE, -speed))
+    )
+    scene = block(platens, Schedule(strain_end=strain), start=Affine())
+    sigma = simulate(scene, threads=1).snapshot.sigma
+    lam, mu = E * NU / ((1.0 + NU) * (1.0 - 2.0 * NU)), E / (2.0 * (1.0 + NU))
+    expected = 2.0 * (lam + mu) * math.log1p(-strain)
+    # the start is uniform along the first axis alone, so that the other begins with a shock of rho c v/2
+    shock = DENSITY * math.sqrt(MODULUS / DENSITY) * speed / 2.0
+    assert np.abs(sigma[:, (0, 1), (0, 1)] - expected).max() < 3.0 * shock
+    assert sigma[:, (0, 1), (0, 1)].mean() == pytest.approx(expected, rel=2e-3)
+
+
+LOW, HIGH = pair(speed=-0.1)
+STEP = Schedule(t_end=1e-5)
+
+
+@pytest.mark.parametrize(
+    ("boundaries", "field"),
+    [
+        ((LOW, HIGH, replace(HIGH, speed=-0.2, span=(0.0, 0.01))), r"boundaries\[2\]\.speed = -0\.2"),
+        ((LOW, HIGH, replace(HIGH, position=SIDE - DX)), r"boundaries\[2\]\.position = 0\.018"),
+        ((LOW, replace(HIGH, speed=0.1)), r"boundaries\[\d\]\.speed = \S+ is refused: it must be towards"),
+        ((LOW, replace(HIGH, speed=0.0, force=1e3), replace(HIGH, speed=0.0)), r"boundaries\[2\] = "),
+    ],
+)
+def test_what_the_grid_cannot_follow_is_refused(boundaries, field):
+    with pytest.raises(SceneError, match=field):
+        block(boundaries, STEP)
+
+
+@pytest.mark.parametrize("more", [{"force": 1.0}, {"stress": 1.0}])
+def test_a_platen_has_one_motion(more):
+    with pytest.raises(SceneError, match="a platen has a speed, a force or a stress"):
+        replace(HIGH, **more)
+
+
+def test_a_force_that_pulls_needs_a_platen_that_can():
+    with pytest.raises(SceneError, match=r"platen\.force = -1\.0"):
+        replace(HIGH, speed=0.0, force=-1.0)
+    assert replace(HIGH, speed=0.0, force=-1.0, pulls=True).held
+
+
+def test_how_far_a_force_goes_is_no_end():
+    with pytest.raises(SceneError, match="give t_end"):
+        block(pair(force=1e3), Schedule(strain_end=0.1))
