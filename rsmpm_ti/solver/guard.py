@@ -4,7 +4,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from rsmpm_ti.errors import UnstableRun
+from rsmpm_ti.errors import BrokenApart, UnstableRun
 from rsmpm_ti.fields.state import Simulation
 from rsmpm_ti.mpm.clock import Clock
 from rsmpm_ti.solver.survey import Survey
@@ -27,8 +27,13 @@ QUIET_STRAIN = 1e-6
 
 
 def guard(sim: Simulation, clock: Clock, survey: Survey) -> None:
-    """Stop a run whose numbers mean nothing any more, with step, position, likely cause and remedy."""
-    where = ""
+    """Stop a run whose numbers mean nothing any more, with step, position, likely cause and remedy.
+
+    Raises BrokenApart where all numbers are finite and all intact rock is within bounds, else UnstableRun.
+    """
+    whole = survey.not_finite == 0 and J_BOUNDS[0] <= survey.J_intact_min and survey.J_intact <= J_BOUNDS[1]
+    kind = BrokenApart if whole else UnstableRun
+    where, what = "", "have" if whole else "are not finite or"
     if survey.sick:
         reference = sim.particles.reference.to_numpy()[np.flatnonzero(sim.particles.id.to_numpy() == survey.sick_id)[0]]
         where = f" (one started at {np.array2string(1e3 * reference, precision=3)} mm)"
@@ -40,13 +45,13 @@ def guard(sim: Simulation, clock: Clock, survey: Survey) -> None:
             f"cause: its failed_mode changes back, or max_events is too small"
         )
     if survey.sick:
-        raise UnstableRun(
-            f"{survey.sick} particles are not finite or left the domain {at}{where}; likely cause: a time step too "
+        raise kind(
+            f"{survey.sick} particles {what} left the domain {at}{where}; likely cause: a time step too "
             f"long for this loading, or fragments flying off; lower schedule.cfl, enlarge the domain, or take "
             f"domain.outside = drop or grow"
         )
     if survey.J_min < J_BOUNDS[0] or survey.J_max > J_BOUNDS[1]:
-        raise UnstableRun(
+        raise kind(
             f"a particle has J = {survey.J_min:.3g} .. {survey.J_max:.3g} {at}, outside {J_BOUNDS}; likely cause: "
             f"an unstable step or a collapse beyond the law; lower schedule.cfl or end the run earlier"
         )

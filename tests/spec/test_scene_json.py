@@ -117,6 +117,7 @@ def test_scene_recorded_before_the_move_still_loads():
     path = Path(__file__).parent / "recorded_disc_lab.json"
     recorded = json.loads(path.read_text())["scene"]
     recorded["loading"]["cell"] = to_plain(LoadCell())
+    recorded["schedule"]["stop_after_drop"] = None
     recorded["rock"]["nonlocal_mean"] = recorded["rock"].pop("averaging")
     recorded["rock"]["nonlocal_mean"]["exclusion"] = recorded["rock"]["nonlocal_mean"].pop("shade")
     assert to_plain(read_scene(path)) == recorded
