@@ -27,6 +27,13 @@ class UnstableRun(RuntimeError):
     result: object = None  # of what had run
 
 
+class BrokenApart(UnstableRun):
+    """Rock that has failed is beyond what can be followed, or pieces have left the domain; nothing else is wrong.
+
+    After a peak that is how a specimen ends, and the run a result (status 0); before one it is an unstable run.
+    """
+
+
 MAX_SHOWN = 200
 """Characters of a refused value that are shown: enough to know it again."""
 

@@ -4,7 +4,7 @@ import bisect
 
 import numpy as np
 
-from rsmpm_ti.analysis.load_curve import loading_curve
+from rsmpm_ti.analysis.load_curve import FilteredLoad, loading_curve
 from rsmpm_ti.analysis.wing_cracks import first_crack_angles, half_turn_mismatch, wings
 from rsmpm_ti.records.events import EventTable
 from rsmpm_ti.records.snapshot import MODE_NAMES, TENSION
@@ -55,6 +55,7 @@ def summarise(scene: Scene, history: np.ndarray, events: EventTable, energy_star
     for name, time in (("onset", onset), ("first_failure", first)):
         out[f"{name}_stress_Pa"], out[f"{name}_strain"] = _load_at(time, history["time_s"], middle, stress, strain)
     out |= _stress_numbers(stress, strain, middle, before, history, scene.loading.confinement)
+    out |= _peak_numbers(stress, FilteredLoad(scene).see_all(history))
     out |= _energy_numbers(history, before, energy_start)
     if scene.dim == 2:
         out |= _crack_numbers(scene, events)
@@ -71,11 +72,10 @@ def _load_at(time: float, rows, middle, stress, strain) -> tuple[float | None, f
 
 
 def _stress_numbers(stress, strain, middle, before, history, confinement) -> dict:
-    names = ("apparent_modulus_Pa", "peak_stress_Pa", "platen_imbalance", "platen_imbalance_max", "kinetic_share")
+    names = ("apparent_modulus_Pa", "platen_imbalance", "platen_imbalance_max", "kinetic_share")
     out = dict.fromkeys(names)
     if len(stress) < 2 or not np.isfinite(stress).all():
         return out
-    out["peak_stress_Pa"] = float(np.abs(stress).max() * np.sign(stress[np.abs(stress).argmax()]))
     end = middle[before][-1] if before.any() else 0.0
     elastic = before & (middle > ELASTIC_RANGE[0] * end) & (middle < ELASTIC_RANGE[1] * end)
     if elastic.sum() >= 3 and np.ptp(strain[elastic]) > 0.0:  # not of platens that stand still
@@ -91,6 +91,20 @@ def _stress_numbers(stress, strain, middle, before, history, confinement) -> dic
         out["platen_imbalance"] = float(difference[before].mean() / added[before].mean())
         loaded = before & (added > 0.1 * added[before].max())
         out["platen_imbalance_max"] = float((difference[loaded] / added[loaded]).max())
+    return out
+
+
+def _peak_numbers(stress: np.ndarray, load: FilteredLoad) -> dict:
+    """The largest stress, which is a peak only where the load has fallen after it."""
+    out: dict = dict.fromkeys(("largest_stress_Pa", "peak_stress_Pa", "peak_filtered_Pa", "peak_filtered_strain"))
+    if len(stress) and np.isfinite(stress).all():
+        out["largest_stress_Pa"] = float(stress[np.abs(stress).argmax()])
+    if load.passed:
+        out |= {
+            "peak_stress_Pa": out["largest_stress_Pa"],
+            "peak_filtered_Pa": load.peak,
+            "peak_filtered_strain": load.peak_strain,
+        }
     return out
 
 

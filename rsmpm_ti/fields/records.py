@@ -36,14 +36,16 @@ class Events:
 class Ledger:
     """Sums over steps, always float64: platen impulses [N s], their work [J], energy lost [J].
 
-    `latest` is the work of the latest step alone: forces are those of a step's beginning, so that the work until now
-    takes half of it again (trapezoidal rule).
+    Forces are those of a step's beginning, and a platen whose speed changes goes by the mean of the speeds before and
+    after (trapezoidal rule): along a boundary's axis, `speed` is of the latest step and `mean_speed` the mean of it and
+    the one before. `latest` is the work of the latest step alone, of which the work until now takes half again.
     """
 
     def __init__(self, scene: Scene, slots: int):
         boundaries = max(1, len(scene.loading.boundaries))
         self.impulse = ti.Vector.field(scene.dim, ti.f64, boundaries)
         self.work, self.latest = ti.field(ti.f64, boundaries), ti.field(ti.f64, boundaries)
+        self.speed, self.mean_speed = ti.field(ti.f64, boundaries), ti.field(ti.f64, boundaries)
         self.body_work = ti.field(ti.f64, slots)
         self.viscous, self.released = ti.field(ti.f64, slots), ti.field(ti.f64, slots)
 
@@ -55,7 +57,9 @@ SCALARS = (
     "J_min",
     "J_max",
     "J_intact",
+    "J_intact_min",
     "sick",
+    "not_finite",
     "sick_id",
     "outside",
     "strays",

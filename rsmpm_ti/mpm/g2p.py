@@ -33,10 +33,15 @@ def spread(sim: ti.template(), w, r):
 
 @ti.func
 def velocity_to_particle(sim: ti.template(), p, w, xi, base, frame, v_i: ti.template(), dv_i: ti.template()):
-    """New particle velocity, and affine matrix if carried, from node velocities [stencil, dim]."""
+    """New particle velocity, and affine matrix if carried, from node velocities [stencil, dim].
+
+    Returns v_pic - (v_new - v_old)/2, by which `body_work` counts.
+    """
     particles = sim.particles
     v_pic, dv = interpolate(sim, w, v_i), interpolate(sim, w, dv_i)
-    particles.v[p] = sim.transfer.to_particle(particles.v[p], v_pic, dv)
+    v_old = particles.v[p]
+    v_new = sim.transfer.to_particle(v_old, v_pic, dv)
+    particles.v[p] = v_new
     if ti.static(particles.affine):
         B, D = ti.Matrix.zero(float, sim.dim, sim.dim), spread(sim, w, xi - base)
         for k, offset in ti.static(enumerate(sim.stencil)):
@@ -45,14 +50,30 @@ def velocity_to_particle(sim: ti.template(), p, w, xi, base, frame, v_i: ti.temp
         for d, e in ti.static(ti.ndrange(sim.dim, sim.dim)):
             B[d, e] *= frame[e, 1] / D[e]
         particles.C[p] = B
+    return v_pic - 0.5 * (v_new - v_old)
 
 
 @ti.func
-def body_work(sim: ti.template(), p, v_pic, dt, time):
-    """Work of the body force in a step [J]: the velocity at the middle of the step makes that of a free fall its
-    kinetic energy to round-off."""
+def body_work(sim: ti.template(), p, v_middle, dt, time):
+    """Work of the body force on a particle in the step that ends at `time` [J]:
+
+        dW = m b . (dx - dt (v_new - v_old)/2),    dx = dt v_pic,    b at the step's beginning.
+
+    The step takes positions along by its new velocity, so that dx is half a step ahead of the kinetic energy. Where b
+    is constant the second term sums to -dt m b . (v_end - v_start)/2: between two states of rest W = m b . u, force
+    times displacement, whatever the transfer does on the way, and at rest nothing is booked. Where the particle moves
+    with its nodes, v_pic = v_new, dW = dt m b . (v_old + v_new)/2 is what b adds to the kinetic energy: free fall is
+    exact. Where b changes, the sum by parts is that of (b_old + b_new)/2 . dx: the trapezoidal rule, as at platens.
+    With mass scaling m grows and b shrinks by the same factor, and W is that of the true weight.
+    """
     b = ti.Vector(sim.acceleration) + field_acceleration(sim, p, time - dt)
-    return ti.cast(dt * (v_pic - 0.5 * dt * b).dot(b) * sim.density * sim.particles.volume[p], ti.f64)
+    return ti.cast(dt * v_middle.dot(b) * sim.density * sim.particles.volume[p], ti.f64)
+
+
+@ti.func
+def book_body_work(sim: ti.template(), slot, work):
+    if ti.static(sim.loaded):
+        sim.ledger.body_work[slot] = sim.ledger.body_work[slot] + work
 
 
 @ti.func
@@ -74,15 +95,15 @@ def nodes_to_particles(sim: ti.template(), start, stop, slot, what: ti.template(
             if ti.static(what.stress):
                 particles.L[p] = velocity_gradient(sim, w, dw, w_i)
             if ti.static(what.velocity):
-                velocity_to_particle(sim, p, w, xi, base, frame, v_i, dv_i)
+                v_middle = velocity_to_particle(sim, p, w, xi, base, frame, v_i, dv_i)
+                work += body_work(sim, p, v_middle, dt, time)
             if ti.static(what.position):
                 v_pic = interpolate(sim, w, v_i)
                 # not +=, which is an atomic add on a field
                 particles.u[p] = particles.u[p] + dt * v_pic
-                work += body_work(sim, p, v_pic, dt, time)
         first = last
-    if ti.static(what.position and sim.loaded):
-        sim.ledger.body_work[slot] = sim.ledger.body_work[slot] + work
+    if ti.static(what.velocity):
+        book_body_work(sim, slot, work)
 
 
 @ti.func

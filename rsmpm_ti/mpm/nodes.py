@@ -124,7 +124,7 @@ def accelerate(sim: ti.template(), i, velocity: ti.template(), dt, factor):
                 impulse = ti.cast(m * (held - v), ti.f64)
                 work = impulse.dot(ti.cast(held, ti.f64))
                 ledger.impulse[b] += impulse
-                ledger.work[b] += work
+                ledger.work[b] += work + impulse[boundary.axis] * (ledger.mean_speed[b] - ledger.speed[b])
                 ledger.latest[b] += work
                 v = held
         dv = v - v_old
@@ -155,7 +155,10 @@ def new_velocity(
 ):
     """Velocity of all nodes at the step's end, by one of the updates above; `sums`: what lies beside f at walls."""
     for b in ti.static(range(len(sim.boundaries))):
+        now = ti.cast(speed_of(sim, b, factor), ti.f64)
         sim.ledger.latest[b] = 0.0
+        sim.ledger.mean_speed[b] = 0.5 * (sim.ledger.speed[b] + now)
+        sim.ledger.speed[b] = now
     fold(sums, sim.grid.walls)
     fold(sim.nodes.f_columns, sim.grid.walls)
     over_nodes(sim, update, dt, factor)

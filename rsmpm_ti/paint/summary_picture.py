@@ -14,6 +14,7 @@ from rsmpm_ti.paint.figure import FramePainter, load_curve
 from rsmpm_ti.paint.frame_axes import DPI, MEGA, MILLI, Wording
 from rsmpm_ti.paint.palette import crack_palette
 from rsmpm_ti.paint.png import write_png
+from rsmpm_ti.records.history_table import PEAK_DROP
 from rsmpm_ti.records.snapshot import Snapshot
 
 LABELLED, MIN_FRACTION = 8, 0.06
@@ -67,7 +68,8 @@ def _curve(axes, history: np.ndarray, wording: Wording, acoustic: np.ndarray) ->
         peak = int(np.nanargmax(load))
         handles += axes.plot(across, load * MEGA, color="#333333", linewidth=2.0, label=wording.inset_y)
         axes.plot(across[peak], load[peak] * MEGA, "o", color="#333333")
-        note = f"peak {load[peak] * MEGA:.2f} MPa at {across[peak]:.3f} %"
+        fallen = np.nanmin(load[peak:]) < (1.0 - PEAK_DROP) * load[peak]
+        note = f"{'peak' if fallen else 'largest so far'} {load[peak] * MEGA:.2f} MPa at {across[peak]:.3f} %"
         axes.set_title(note, fontsize=14, loc="left")
         axes.set_xlabel(wording.inset_x, fontsize=14)
         axes.set_ylabel(f"{wording.inset_y}   (compression positive)", fontsize=14)

@@ -65,6 +65,10 @@ HISTORY = Table(
     ),
 )  # fmt: skip
 
+PEAK_DROP = 0.1
+"""The load has passed a peak where it has fallen by this fraction of its largest: more than waves swing it in a test
+that is quasi-static."""
+
 HISTORY_COLUMNS = HISTORY.names
 """Columns of every history: fields of the structured array `Result.history`, all float64."""
 

@@ -15,7 +15,8 @@ class Result:
 
     `history`: structured array with the columns of history.csv; `summary`: the dict of summary.json; `events`:
     EventTable; `fracture`: cracks, fragments and acoustic events measured on them; `snapshot`: last state.
-    `stopped`: "" when the run reached its end, else why it did not.
+    `stopped`: "" when the run reached the end of its schedule, else why it did not: by a rule of its own, because the
+    specimen had burst, or by a signal, whose number is `signal`.
     """
 
     history: np.ndarray
@@ -25,6 +26,7 @@ class Result:
     snapshot: Snapshot
     out: Path | None
     stopped: str = ""
+    signal: int = 0
 
     def __repr__(self) -> str:
         """In a line: the arrays of a run would fill a terminal."""

@@ -47,12 +47,25 @@ SUMMARY = Table(
         _key("failed_tension", "1", "failures in tension"),
         _key("failed_shear", "1", "failures in shear"),
         _key("apparent_modulus_Pa", "Pa", "slope of the curve between 0.2 and 0.9 of the time to onset"),
-        _key("peak_stress_Pa", "Pa", "nominal stress of largest size, with its sign"),
         _key("platen_imbalance", "1", "up to onset: mean difference of both sides over their mean added stress"),
         _key("platen_imbalance_max", "1", "largest such ratio of rows with a tenth of the load or more"),
         _key("kinetic_share", "1", "kinetic over elastic energy in the last row before onset"),
+        _key("largest_stress_Pa", "Pa", "nominal stress of largest size so far, of one row, with its sign"),
+        _key(
+            "peak_stress_Pa", "Pa", "the same, where it is a peak: the filtered load has fallen by a tenth of its own "
+            "largest since; else null",
+        ),
+        _key(
+            "peak_filtered_Pa", "Pa", "the peak of the filtered load, its running median over a quarter of a wave "
+            "transit from platen to platen, at least three rows; what one row alone shows is no part of it",
+        ),
+        _key("peak_filtered_strain", "1", "nominal strain there"),
         _key("energy_balance_error", "1", "largest residual of kinetic + elastic + dissipated - work, over the work"),
         _key("energy_balance_error_elastic", "1", "the same up to onset"),
+        _key(
+            "kinetic_share_after", "1", "after first failure: largest kinetic energy over the largest elastic energy "
+            "so far; null where nothing failed",
+        ),
         _key("cracks", "1", "rows of cracks.csv"),
         _key("crack_length_m", "m", "sum of the lengths of all cracks; null in 3D"),
         _key("fragments", "1", "pieces of intact rock, without dust"),
@@ -76,8 +89,8 @@ SUMMARY = Table(
         _key("dropped_mass_kg", "kg", "their mass, the rock's own"),
         _key("dropped_momentum_kg_m_s", "kg m/s", "their momentum, mass scaling included"),
         _key("dropped_energy_J", "J", "their kinetic and elastic energy"),
-        _key("stopped", "", "why the run stopped before its end; empty where it did not"),
-        _key("warning", "", "what went wrong beside the run, such as a missing encoder of movies"),
+        _key("stopped", "", "why the run ended before the end of its schedule; empty where it did not"),
+        _key("warnings", "", "list of sentences: what the numbers must not be taken for, and what went wrong beside"),
     ),
 )  # fmt: skip
 

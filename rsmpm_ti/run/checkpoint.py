@@ -19,7 +19,7 @@ from rsmpm_ti.solver.observer import Observer, Watch
 from rsmpm_ti.solver.outflow import Dropped
 from rsmpm_ti.solver.view import View
 
-LEDGER = ("impulse", "work", "latest", "body_work", "viscous", "released")
+LEDGER = ("impulse", "work", "latest", "speed", "body_work", "viscous", "released")
 PER_SLOT = ("body_work", "viscous", "released")
 """Those of the ledger that have a slot for each thread: their sum is what counts."""
 

@@ -10,6 +10,7 @@ from rsmpm_ti.output.folder import write_all
 from rsmpm_ti.output.fracture_tables import write_fracture
 from rsmpm_ti.records.files import write_json
 from rsmpm_ti.records.result import Result
+from rsmpm_ti.run.warnings import kinetic_share_after, warnings_of
 
 
 def finish(run, stopped: str, failure: Exception | None) -> Result:
@@ -29,7 +30,7 @@ def finish(run, stopped: str, failure: Exception | None) -> Result:
         )
     return Result(
         history=view.history, summary=summary, events=view.events, fracture=fracture, snapshot=view.snapshot,
-        out=run.out, stopped=stopped,
+        out=run.out, stopped=stopped, signal=0 if run.over else run.interrupt.signal,
     )  # fmt: skip
 
 
@@ -43,7 +44,7 @@ def _writes(run, view, fracture: Fracture, failure: Exception | None) -> list:
 
     def checkpoint() -> None:
         try:
-            timed(run.checkpoint)
+            timed(run.write_checkpoint)
         except ObserverError as error:  # by what it remembers; the rest is still written
             run.late_failure = error
 
@@ -64,7 +65,8 @@ def _writes(run, view, fracture: Fracture, failure: Exception | None) -> list:
 def numbers_of(run, view, fracture: Fracture, speed: float, stopped: str) -> dict:
     """summary.json, whose keys `records/summary_table.py` declares."""
     writer = run.writer
-    return {
+    what_broke = summarise(run.scene, view.history, view.events, run.history.energy_start)
+    numbers = {
         "particles": run.sim.particles.count,
         "steps": run.clock.step,
         "dt_s": run.clock.dt,
@@ -74,9 +76,11 @@ def numbers_of(run, view, fracture: Fracture, speed: float, stopped: str) -> dic
         "painting_cpu_s": writer.cpu_s if writer is not None else 0.0,
         "particle_steps_per_s": speed,
         "time_scale": run.scene.time_scale,
-        **summarise(run.scene, view.history, view.events, run.history.energy_start),
+        **what_broke,
+        "kinetic_share_after": kinetic_share_after(view.history, what_broke["first_failure_time_s"]),
         **fracture.numbers(),
         **run.drive.dropped.numbers(),
         "stopped": stopped,
-        "warning": writer.warning if writer is not None else "",
     }
+    beside = [writer.warning] if writer is not None and writer.warning else []
+    return numbers | {"warnings": warnings_of(run.scene, numbers, view.history, view.events) + beside}

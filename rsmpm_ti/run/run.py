@@ -1,19 +1,19 @@
 """Run a scene from Python: start Taichi, step, let observers look, write."""
 
 import os
-import threading
 import time
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
+from rsmpm_ti.analysis.load_curve import FilteredLoad
 from rsmpm_ti.backend.start import start_taichi
-from rsmpm_ti.errors import ObserverError, SceneError, UnstableRun, refuse
+from rsmpm_ti.errors import BrokenApart, ObserverError, SceneError, UnstableRun, refuse
 from rsmpm_ti.output.folder import prepare, write_record
 from rsmpm_ti.records.result import Progress, Result
 from rsmpm_ti.records.tables import Column
 from rsmpm_ti.run.finish import finish
-from rsmpm_ti.run.interrupt import asked_to_stop
+from rsmpm_ti.run.interrupt import Interrupt, asked_to_stop
 from rsmpm_ti.run.settings import CHECKPOINT_S, Settings
 from rsmpm_ti.spec.scene import Scene
 
@@ -40,7 +40,7 @@ def simulate(
     start where there is none; checkpoint_every: wall time between checkpoints [s]; progress: called after each history
     row; columns: more columns of the history (`Column`); observers: more observers (`Observer`), whose states a
     checkpoint keeps, to be given again, in the same order, to a run that resumes. Ctrl-C and SIGTERM stop after the
-    step and still write what there is.
+    step and still write what there is. A specimen that bursts after its peak ends the run, which is then a result.
     Raises SceneError for input that cannot be run, before anything compiles, and when files cannot be written any
     more, and after writing everything up to there UnstableRun, or ObserverError where a column or observer raised.
     """
@@ -101,9 +101,12 @@ class Run:
         self.row_steps = max(1, self.clock.total // self.scene.schedule.rows)
         self.watches = self._observers()
         self.wall_before, self.resumed = 0.0, kept is not None
-        self.interrupted = threading.Event()
+        self.interrupt, self.ending, self.followed = Interrupt(), "", True
+        self.load = FilteredLoad(self.scene)
         if kept is not None:
             progress = restore(kept, self.drive, self.history)
+            self.load.see_all(self.history.table())
+            self.ending = self._fallen(self.view())
             restore_observers(self.watches, progress["observers"], kept)
             self.wall_before = progress["wall_s"]
 
@@ -120,21 +123,23 @@ class Run:
             wanted = self.scene.output
             own.append(Frames(self.writer, wanted.frames, self.sim.particles.count))
             own += [ParticleFiles(self.writer, wanted.vtu)] if wanted.vtu else []
-            last.append(Checkpoint(self.settings.checkpoint_every, self.checkpoint))
+            last.append(Checkpoint(self.settings.checkpoint_every, self.write_checkpoint))
         users = [Watch(observer) for observer in self.settings.observers]
         return [*(Watch(o, own=True) for o in own), *users, *(Watch(o, own=True) for o in last)]
 
     def go(self) -> Result:
-        """Steps to the end of the scene, to Ctrl-C, SIGTERM or instability; writes; raises as `simulate`."""
+        """Steps to the end of the scene or an ending of its own, to a signal or instability; writes; raises as
+        `simulate`."""
         stopped = ""
         failure: ObserverError | UnstableRun | SceneError | None = None
         try:
-            with asked_to_stop(self.interrupted):
+            with asked_to_stop(self.interrupt):
                 try:
                     self._begin()
-                    while not self.clock.done and not self.interrupted.is_set():
+                    while not self.over and not self.interrupt.signal:
                         self._row()
-                    if not self.clock.done:
+                    stopped = self.ending
+                    if not self.over:
                         stopped = f"interrupted after step {self.clock.step} of {self.clock.total}"
                 except ObserverError as error:
                     failure = ObserverError(f"{error}; at step {self.clock.step}, t = {self.clock.time:.6g} s")
@@ -160,19 +165,44 @@ class Run:
         if not self.resumed:
             self._look(self.view())  # without a row: no force has acted yet
             self.drive.advance(1)
-        elif not self.clock.done:
+        elif not self.over:
             self._row()
         ti.sync()
         self.started, self.painting_s, self.steps_before = time.perf_counter(), 0.0, self.clock.step
 
     def _row(self) -> None:
         """Steps up to the next history row."""
-        self.drive.advance(self.row_steps)
+        from rsmpm_ti.run.ending import burst
+
+        broken = None
+        try:
+            self.drive.advance(self.row_steps)
+        except BrokenApart as error:
+            broken = error
         view = self.view()
         self.history.see(view)
+        self.load.see(view.load.stress, view.strain)
+        if broken is not None:
+            self.ending, self.followed = burst(self.load, view, self.history.books, broken), False
+            if not self.ending:
+                raise broken
+        else:
+            self.ending = self._fallen(view)
+        if self.ending:
+            view.fraction = 1.0  # who looks at the end looks now
         self._look(view)
         if self.settings.progress is not None:
             self.settings.progress(self._progress(view))
+
+    @property
+    def over(self) -> bool:
+        """Whether the run has come to its end, by its schedule or by what happened."""
+        return self.clock.done or bool(self.ending)
+
+    def _fallen(self, view) -> str:
+        from rsmpm_ti.run.ending import fallen
+
+        return fallen(self.load, view, self.scene.schedule.stop_after_drop)
 
     def view(self):
         from rsmpm_ti.solver.view import View
@@ -186,6 +216,11 @@ class Run:
         start = time.perf_counter()
         look_all(self.watches, view)
         self.painting_s += time.perf_counter() - start
+
+    def write_checkpoint(self) -> None:
+        """Not of a state that cannot be followed: the one before it stays."""
+        if self.followed:
+            self.checkpoint()
 
     def checkpoint(self) -> None:
         from rsmpm_ti.run.checkpoint import observer_arrays, take

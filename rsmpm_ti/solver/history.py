@@ -1,5 +1,7 @@
 """The history of a run: rows of named columns, and the guard that stops a run which makes energy."""
 
+from dataclasses import asdict
+
 import numpy as np
 
 from rsmpm_ti.errors import ObserverError
@@ -8,7 +10,7 @@ from rsmpm_ti.mpm.clock import Clock
 from rsmpm_ti.records.history_table import HISTORY
 from rsmpm_ti.records.tables import Column
 from rsmpm_ti.solver.gauges import gauge_columns
-from rsmpm_ti.solver.guard import guard_energy, quiet_energy
+from rsmpm_ti.solver.guard import EnergyBooks, guard_energy, quiet_energy
 from rsmpm_ti.solver.survey import Survey
 from rsmpm_ti.solver.view import View
 from rsmpm_ti.spec.load_cell import NO_LOAD
@@ -26,7 +28,7 @@ class History:
         self._asked_for = columns
         self._rows: list[tuple[float, ...]] = []
         self._table = None
-        self._energy_start, self._quiet = start.kinetic + start.elastic, quiet_energy(sim)
+        self.books = EnergyBooks(start=start.kinetic + start.elastic, quiet=quiet_energy(sim)).after(start)
         self._impulse, self._time = start.impulse, clock.time
         self._cell = sim.scene.loading.load_cell
         self.load = NO_LOAD
@@ -34,7 +36,7 @@ class History:
     @property
     def energy_start(self) -> float:
         """Kinetic and elastic energy with which the run started [J]."""
-        return self._energy_start
+        return self.books.start
 
     @property
     def failed(self) -> float:
@@ -62,7 +64,8 @@ class History:
             self.load = NO_LOAD
         self._rows.append(tuple(self._value(column, view) for column in self.columns))
         self._impulse, self._time = survey.impulse, view.time
-        guard_energy(self._sim, self._clock, survey, self._energy_start, self._quiet)
+        self.books = self.books.after(survey)
+        guard_energy(self._sim, self._clock, survey, self.books)
 
     def _value(self, column: Column, view: View) -> float:
         try:
@@ -80,15 +83,15 @@ class History:
         return self._table
 
     def state(self) -> dict[str, np.ndarray]:
-        """The rows, and what the next one is counted from: energy of the start [J], impulses [N s] and time [s]."""
+        """The rows, and what the next one is counted from: the books of energy [J], impulses [N s] and time [s]."""
         return {
             "history": np.array(self._rows, dtype=float).reshape(-1, len(self.columns)),
-            "history_energy_start": np.array(self._energy_start),
+            **{f"history_energy_{name}": np.array(value) for name, value in asdict(self.books).items()},
             "history_impulse": np.array(self._impulse),
             "history_time": np.array(self._time),
         }
 
     def resume(self, state: dict[str, np.ndarray]) -> None:
         self._rows, self._table = [tuple(row) for row in state["history"].tolist()], None
-        self._energy_start, self._time = float(state["history_energy_start"]), float(state["history_time"])
-        self._impulse = state["history_impulse"]
+        self.books = EnergyBooks(**{name: float(state[f"history_energy_{name}"]) for name in asdict(self.books)})
+        self._impulse, self._time = state["history_impulse"], float(state["history_time"])

@@ -23,7 +23,9 @@ class Survey:
     J_min: float
     J_max: float
     J_intact: float  # largest of rock that has not failed, 0 where all has
+    J_intact_min: float  # and smallest, 1e30 where all has
     sick: int  # particles with a non-finite value or outside the domain
+    not_finite: int  # those of them that have a non-finite value
     sick_id: int  # one of them, -1 if none
     outside: int  # particles outside the domain where those are to be dropped, which then are not sick
     strays: int  # particles that left the cell they were sorted into
@@ -58,27 +60,30 @@ def _survey(sim: ti.template()):
         m_p = sim.density * particles.volume[p]
         sigma, J = particles.sigma[p], particles.J[p]
         stored, J_intact, J_open = J * rock.elasticity.energy(sigma), J, J  # J_open: of what may not gape
+        J_whole = J
         if ti.static(particles.breaks):
             if particles.mode[p] != 0:
-                J_intact = 0.0
+                J_intact, J_whole = 0.0, 1e30
                 stored = rock.after_failure.stored(sim, p)
                 if rock.after_failure.is_open(sim, p) == 1:
                     J_open = 1.0
         xi = coordinates(sim, p, frame)
-        sick = 0
+        sick, not_finite = 0, 0
         if left_domain(sim, xi):
             sick = sim.outside_is_sick
             report.outside[None] += 1.0 - sick
         for d in ti.static(range(sim.dim)):
             if ti.math.isnan(v[d]) or ti.math.isinf(v[d]):
-                sick = 1
-            if ti.math.isnan(xi[d]):
-                sick = 1
+                not_finite = 1
+            if ti.math.isnan(xi[d]) or ti.math.isinf(xi[d]):
+                not_finite = 1
         for k in ti.static(range(sigma.n)):
             if ti.math.isnan(sigma[k]) or ti.math.isinf(sigma[k]):
-                sick = 1
+                not_finite = 1
+        sick = ti.max(sick, not_finite)
         if sick == 1:
             report.sick[None] += 1.0
+            report.not_finite[None] += not_finite
             report.sick_id[None] = ti.cast(particles.id[p], ti.f64)
         else:
             report.kinetic[None] += ti.cast(0.5 * m_p * v.dot(v), ti.f64)
@@ -89,6 +94,7 @@ def _survey(sim: ti.template()):
             ti.atomic_min(report.J_min[None], ti.cast(J, ti.f64))
             ti.atomic_max(report.J_max[None], ti.cast(J_open, ti.f64))
             ti.atomic_max(report.J_intact[None], ti.cast(J_intact, ti.f64))
+            ti.atomic_min(report.J_intact_min[None], ti.cast(J_whole, ti.f64))
             for d in ti.static(range(sim.dim)):
                 report.momentum[d][None] += ti.cast(m_p * v[d], ti.f64)
         base = grid.base(xi, sim.shape)
@@ -113,7 +119,7 @@ def clear_report(sim: ti.template(), k):
     report = sim.report
     for field in ti.static(report.sums):
         field[None] = 0.0
-    report.J_min[None], report.sick_id[None] = 1e30, -1.0
+    report.J_min[None], report.J_intact_min[None], report.sick_id[None] = 1e30, 1e30, -1.0
 
 
 @ti.func
@@ -132,7 +138,9 @@ def survey(sim: Simulation) -> Survey:
     _survey(sim)
     values, dim = sim.report.values.to_numpy(), sim.dim
     scalars = dict(zip(SCALARS, values, strict=False))
-    whole = {name: int(scalars.pop(name)) for name in ("sick", "sick_id", "outside", "strays", "far_strays")}
+    whole = {
+        name: int(scalars.pop(name)) for name in ("sick", "not_finite", "sick_id", "outside", "strays", "far_strays")
+    }
     modes = values[len(SCALARS) : FIXED]
     return Survey(
         **scalars,

@@ -25,7 +25,7 @@ from rsmpm_ti.spec.load_cell import LoadCell
 from rsmpm_ti.spec.loading_start import Affine, AtRest, Press, Program, Ramp
 from rsmpm_ti.spec.mass_scaling import MAX_TIME_SCALE, estimate
 from rsmpm_ti.spec.regions import MAX_COORDINATE, Position, Region, slits_of
-from rsmpm_ti.spec.scene_checks import check_bodies, check_cracks, check_loading, check_memory, check_motion
+from rsmpm_ti.spec.scene_checks import check_bodies, check_cracks, check_loading, check_memory, check_motion, check_stop
 from rsmpm_ti.spec.seeding import Jittered, Lattice, Seeds
 from rsmpm_ti.spec.slit_check import check_slit
 from rsmpm_ti.units import Acceleration, Length, LengthOrArea, Pressure, Spin, Time, Velocity
@@ -189,6 +189,8 @@ class Schedule:
 
     dt = cfl dx/c_p unless `dt` [s] is given. `rows` is about how many rows the history gets. adaptive: steps shrink as
     particles move and swell, dt c_p/(c + |v|), for impacts; the number of steps is then not known beforehand.
+    stop_after_drop: the run ends where, after a failure, the nominal stress has fallen by this fraction of its largest
+    so far, both filtered and without the confining pressure (see `load_curve.py`); 0.5: below half of the peak.
     """
 
     strain_end: float | None = None
@@ -197,6 +199,7 @@ class Schedule:
     dt: Annotated[Time, Interval(ge=1e-30, le=MAX_SIZE)] | None = None
     rows: Annotated[int, Interval(ge=1, le=1_000_000)] = 1000
     adaptive: bool = False
+    stop_after_drop: Annotated[float, Interval(gt=0.0, lt=1.0), Remedy("it is a fraction of the peak")] | None = None
 
     def __post_init__(self):
         if (self.strain_end is None) == (self.t_end is None):
@@ -254,6 +257,7 @@ class Scene:
         check_confined_rock(self.loading.confinement, self.rock.elasticity)
         check_bodies(self)
         check_loading(self)
+        check_stop(self)
         check_cracks(self.rock, self.shape, self.dim, self.domain.dx)
         for body in self.bodies:
             volume = (self.domain.dx / body.seeding.particles_per_axis) ** self.dim

@@ -219,6 +219,14 @@ def _check_load_cell(scene) -> None:
             raise refuse("gauge.b", gauge.b, allowed, "both ends would be glued to the same particle")
 
 
+def check_stop(scene) -> None:
+    """A run that ends by its load must have one."""
+    cell, drop = scene.loading.load_cell, scene.schedule.stop_after_drop
+    if drop is not None and (cell is None or not (cell.lower or cell.upper) or cell.width is None):
+        remedy = "give two platens that face each other and loading.width, or a loading.cell"
+        raise refuse("schedule.stop_after_drop", drop, "None where no load is measured", remedy)
+
+
 def _near_rock(scene, point: tuple[float, ...]) -> bool:
     """Whether a point, or one a cell from it along axes or between them, lies in a body; surfaces belong to no body."""
     around = np.array(point) + scene.domain.dx * np.array(list(itertools.product((-1.0, 0.0, 1.0), repeat=scene.dim)))

@@ -116,7 +116,7 @@ def test_every_scene_that_ships_has_its_number():
 @every_scene
 def test_it_runs_to_its_end_and_breaks_rock_with_every_number_finite(coarse_run, name):
     result = coarse_run(name)
-    assert result.stopped == "" and result.summary["warning"] == "" and result.summary["dropped"] == 0
+    assert result.stopped == "" and result.summary["dropped"] == 0
     assert len(result.events) > 0 and (result.snapshot.failure_mode != INTACT).any()
     assert all(np.isfinite(result.history[column]).all() for column in result.history.dtype.names)
     state = dict(vars(result.snapshot))

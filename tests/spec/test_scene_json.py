@@ -119,6 +119,7 @@ def test_scene_recorded_before_the_move_still_loads():
     recorded["loading"]["cell"] = to_plain(LoadCell())
     for platen in recorded["loading"]["boundaries"]:
         platen |= {"pulls": False, "force": None, "stress": None}
+    recorded["schedule"]["stop_after_drop"] = None
     recorded["rock"]["nonlocal_mean"] = recorded["rock"].pop("averaging")
     recorded["rock"]["nonlocal_mean"]["exclusion"] = recorded["rock"]["nonlocal_mean"].pop("shade")
     assert to_plain(read_scene(path)) == recorded

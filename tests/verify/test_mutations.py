@@ -75,6 +75,10 @@ MUTATIONS = {
         [("fields/state.py", "packed[:, :3] = -self.confinement", "packed[:, :2] = -self.confinement")],
         "triaxial",
     ),
+    "work of a weight as if it fell freely": (
+        [("mpm/g2p.py", "return ti.cast(dt * v_middle.dot(b)", "return ti.cast(dt * (v_middle - 0.5 * dt * b).dot(b)")],
+        "gravity",
+    ),
     "forgotten stress out of the plane": (
         [
             (

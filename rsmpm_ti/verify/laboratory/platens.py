@@ -102,9 +102,9 @@ def hit(dim: int, axis: int, dx: float, threads: int = 1) -> list[Row]:
     rest = "first order in the cells: nodes of the plane stop at once, and a front of three cells leaves swings behind"
     return [
         relative(f"{name}: load of the hit [Pa]", DENSITY * C * SPEED, load[held].mean(), 0.03, why),
-        relative(f"{name}: impulse [Pa s]", 2.0 * DENSITY * LENGTH * SPEED, impulse, 1.5 * dx / LENGTH, rest),
+        relative(f"{name}: impulse [Pa s]", 2.0 * DENSITY * LENGTH * SPEED, impulse, 2.0 * dx / LENGTH, rest),
         at_most(f"{name}: pull [Pa]", float(-load.min()), 0.0, "it pushes alone: to the last bit"),
-        relative(f"{name}: leaves at [m/s]", SPEED, float(leaves), 1.5 * dx / LENGTH, rest),
+        relative(f"{name}: leaves at [m/s]", SPEED, float(leaves), 2.0 * dx / LENGTH, rest),
     ]
 
 

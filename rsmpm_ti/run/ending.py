@@ -1,0 +1,56 @@
+"""How a run ends before its schedule does, and is a result all the same: its load has fallen, or its specimen burst."""
+
+from rsmpm_ti.analysis.load_curve import FilteredLoad
+from rsmpm_ti.errors import BrokenApart
+from rsmpm_ti.solver.guard import EnergyBooks
+from rsmpm_ti.solver.view import View
+
+BURST_FAILURES = 0.01
+"""Least failures of a specimen that has burst, over its particles: a crack of one cell through a hundred."""
+
+BURST_LOAD = 0.5
+"""A specimen that has burst carries less than this fraction of its peak; one that yields carries more."""
+
+BURST_CREATED = 0.1
+"""Largest fraction of a run's energy that may have come from nowhere when it bursts.
+
+The force of failure is booked to first order in a step, 2 to 3 % of the work where a whole specimen bursts at once
+(docs/stability.md), and 4 % in coarse cells: this is more than twice that. A run that flies apart by its numbers lives
+on energy from nowhere, and all of it is.
+"""
+
+
+def fallen(load: FilteredLoad, view: View, drop: float | None) -> str:
+    """Why the run ends here if the load has fallen by `drop` of its peak since something failed, else "".
+
+    Before a failure it is the platens or a wave that take the load away.
+    """
+    failures = view.survey.failed_tension + view.survey.failed_shear
+    if drop is None or not failures or not load.fraction < 1.0 - drop:
+        return ""
+    return f"stopped: the load fell to {load.fraction:.2g} of its peak of {_peak(load)}, at {_now(view)}"
+
+
+def burst(load: FilteredLoad, view: View, books: EnergyBooks, error: BrokenApart) -> str:
+    """Why the run ends here if its specimen has burst, else "": then its numbers have.
+
+    It has where rock has failed in numbers, the load fell from a peak, and the energy of it all is accounted for.
+    """
+    failures = view.survey.failed_tension + view.survey.failed_shear
+    fraction, created = failures / view.sim.particles.count, books.created / max(books.turnover, 1e-300)
+    if fraction < BURST_FAILURES or not load.fraction < BURST_LOAD or not created <= BURST_CREATED:
+        return ""
+    what = str(error).partition("; likely cause")[0]
+    return (
+        f"burst: {what}, after the peak of {_peak(load)}; the load had fallen to {load.fraction:.2g} of it, with "
+        f"{failures} failures of {view.sim.particles.count} particles, and {100.0 * max(0.0, created):.2g} % of the "
+        f"energy came from nowhere; for more of the flight take domain.outside = drop or a larger domain"
+    )
+
+
+def _peak(load: FilteredLoad) -> str:
+    return f"{load.peak / 1e6:.4g} MPa at a strain of {load.peak_strain:.4g}"
+
+
+def _now(view: View) -> str:
+    return f"step {view.step}, t = {view.time:.6g} s, strain {view.strain:.4g}"

@@ -1,0 +1,123 @@
+"""What the numbers of a run must not be taken for: sentences for summary.json and for the terminal. NumPy only."""
+
+import numpy as np
+
+from rsmpm_ti.records.events import EventTable
+from rsmpm_ti.spec.boundaries import Platen
+from rsmpm_ti.spec.loading_start import AtRest
+from rsmpm_ti.spec.regions import Disc
+from rsmpm_ti.spec.scene import Scene
+
+MAX_IMBALANCE = 0.01
+"""Platen imbalance up to which a test is called quasi-static: a load is then known to a per cent."""
+
+MAX_KINETIC = 0.05
+"""Kinetic over stored energy after which a test is no longer called quasi-static: speeds then are a fifth of those at
+which all that was stored is motion."""
+
+NEAR_PLATEN = 1.5
+"""Cells from a platen within which its row of nodes has a part in the stress: the reach of a B-spline."""
+
+MIDDLE = 1.0 / 3.0
+"""Part of a disc's loaded diameter, about its centre, on which a Brazilian test must break: there tension is within a
+per cent of that in the middle (Hondros 1959), and farther out the wedges below the platens begin."""
+
+
+def warnings_of(scene: Scene, numbers: dict, history: np.ndarray, events: EventTable) -> list[str]:
+    """Sentences, most of them with a remedy; numbers: of summary.json so far."""
+    found = [
+        _sudden_start(scene),
+        _imbalance(numbers),
+        _motion(numbers, history),
+        *([_near_platen(scene, events), _beside_the_middle(scene, events)] if len(events) else []),
+        numbers["numerical_fracture"] or "",
+    ]
+    return [sentence for sentence in found if sentence]
+
+
+def _sudden_start(scene: Scene) -> str:
+    """Platens at full speed from the first step on a body at rest: rho c v runs through it as a wave."""
+    moving = [b for b in scene.loading.boundaries if isinstance(b, Platen) and b.speed != 0.0]
+    at_rest = all(body.velocity is None and body.spin == 0.0 for body in scene.bodies)
+    if not moving or not at_rest or not isinstance(scene.loading.start, AtRest):
+        return ""
+    stress = scene.density * scene.wave_speed * max(abs(platen.speed) for platen in moving)
+    return (
+        f"platens move at full speed from the first step on a body at rest: a wave of rho c v = {stress / 1e6:.3g} MPa "
+        f"runs through it; take start = Affine or Ramp for a static test"
+    )
+
+
+def _imbalance(numbers: dict) -> str:
+    imbalance = numbers["platen_imbalance"]
+    if imbalance is None or imbalance <= MAX_IMBALANCE:
+        return ""
+    return (
+        f"platen imbalance {100.0 * imbalance:.2g} %: above {100.0 * MAX_IMBALANCE:g} % the loading is not "
+        f"quasi-static; lower loading.time_scale or the speed"
+    )
+
+
+def kinetic_share_after(history: np.ndarray, first: float | None) -> float | None:
+    """Largest kinetic energy after the first failure at a time [s], over the largest elastic energy so far."""
+    if first is None:
+        return None
+    ratio, after = _kinetic_ratio(history), history["time_s"] >= first
+    return float(ratio[after].max()) if after.any() else None
+
+
+def _kinetic_ratio(history: np.ndarray) -> np.ndarray:
+    stored = np.maximum.accumulate(history["energy_elastic_J"])
+    return history["energy_kinetic_J"] / np.where(stored > 0.0, stored, np.inf)
+
+
+def _motion(numbers: dict, history: np.ndarray) -> str:
+    """A collapse that sets the specimen in motion is no quasi-static test any more, and knows of its mass."""
+    share = numbers["kinetic_share_after"]
+    if share is None or share <= MAX_KINETIC:
+        return ""
+    over = _kinetic_ratio(history) > MAX_KINETIC
+    over &= history["time_s"] >= numbers["first_failure_time_s"]
+    strain, peak = float(history["axial_strain"][over.argmax()]), numbers["peak_filtered_strain"]
+    where = "" if peak is None else ", after the peak" if abs(strain) >= abs(peak) else ", before the peak"
+    at = f"from a strain of {strain:.3g} on{where}" if np.isfinite(strain) else "after the first failure"
+    return (
+        f"kinetic energy reaches {100.0 * share:.2g} % of the largest elastic energy, more than "
+        f"{100.0 * MAX_KINETIC:g} % {at}: the test is not quasi-static there, and its load depends on the speed and "
+        f"the mass scaling"
+    )
+
+
+def _near_platen(scene: Scene, events: EventTable) -> str:
+    """The first failure, against where the platens are then, after the travel of a steady speed at most."""
+    x, dx = events.x[0].astype(float), scene.domain.dx
+    for platen in scene.loading.boundaries:
+        if not isinstance(platen, Platen):
+            continue
+        inward = 1.0 if platen.side == "lower" else -1.0
+        travel = max(0.0, inward * platen.speed * float(events.time[0]))
+        distance = (inward * (float(x[platen.axis]) - platen.position) - travel) / dx
+        if distance < NEAR_PLATEN:
+            return (
+                f"the first failure is {max(0.0, distance):.2g} cells from the platen at {1e3 * platen.position:g} mm: "
+                f"within {NEAR_PLATEN:g} cells stress is that of the contact and the grid; the load at first failure "
+                f"is no strength of the rock"
+            )
+    return ""
+
+
+def _beside_the_middle(scene: Scene, events: EventTable) -> str:
+    """A whole disc between platens that does not break from its middle."""
+    regions = [body.region for body in scene.bodies]
+    if scene.dim != 2 or len(regions) != 1 or not isinstance(regions[0], Disc) or scene.loading.platens is None:
+        return ""
+    disc, axis = regions[0], scene.loading.platens[0].axis
+    offset = np.abs(events.x[0].astype(float) - np.array(disc.centre))
+    if offset.max() <= MIDDLE * disc.radius:
+        return ""
+    position = ", ".join(f"{1e3 * c:.2f}" for c in events.x[0])
+    return (
+        f"the first failure, at ({position}) mm, is {offset[axis] / disc.radius:.2g} R along and "
+        f"{offset[1 - axis] / disc.radius:.2g} R beside the loaded diameter from the centre, not in its middle third: "
+        f"the number is not a strength"
+    )
