@@ -1,4 +1,4 @@
-"""What can go wrong, as exceptions: a scene that cannot be run, a run that became unstable, an observer that failed."""
+"""What can go wrong: a scene that cannot be run, one that is hard to believe, an unstable run, a failed observer."""
 
 
 class SceneError(ValueError):
@@ -25,6 +25,13 @@ class UnstableRun(RuntimeError):
     """
 
     result: object = None  # of what had run
+
+
+class RockWarning(UserWarning):
+    """Something in a scene is hard to believe, or means something else than it seems to; the run goes on.
+
+    `simulate` warns by Python's warnings; commands print the sentences on stderr.
+    """
 
 
 MAX_SHOWN = 200

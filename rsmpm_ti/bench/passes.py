@@ -1,4 +1,5 @@
-"""`bench passes`: where the time of a step goes. Parts of the one kernel that a step is, each compiled by itself."""
+"""`bench passes`: where the time of a step goes. Parts of the one kernel that a step is, each compiled by itself; and
+the look at all particles that every row of the history needs."""
 
 import statistics
 import time
@@ -13,6 +14,7 @@ def passes(shape: str, threads: int, rounds: int) -> str:
     from rsmpm_ti.mpm.nodes import update_nodes
     from rsmpm_ti.mpm.passes import Pass, g2p, musl_step, p2g
     from rsmpm_ti.mpm.stepper import LOAD, MOVE, MOVE_AND_LOAD
+    from rsmpm_ti.solver.survey import survey
 
     real, _ = start_taichi("f64", "cpu", threads)
     drive = simulation(Runner("solver", shape), real)
@@ -26,6 +28,7 @@ def passes(shape: str, threads: int, rounds: int) -> str:
         "positions, gradient, stress, check": lambda: g2p(sim, MOVE, 0.0, 0.0, ticket()),
         "these and particles to nodes": lambda: g2p(sim, MOVE_AND_LOAD, 0.0, 0.0, ticket()),
         "whole step": lambda: musl_step(sim, MOVE_AND_LOAD, 0.0, 0.0, 0.0, ticket(2)),
+        "look at all particles": lambda: survey(sim),
     }
     seconds: dict[str, list[float]] = {name: [] for name in parts}
     for part in parts.values():

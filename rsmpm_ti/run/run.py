@@ -3,18 +3,20 @@
 import os
 import threading
 import time
+import warnings
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
 from rsmpm_ti.backend.start import start_taichi
-from rsmpm_ti.errors import ObserverError, SceneError, UnstableRun, refuse
+from rsmpm_ti.errors import ObserverError, RockWarning, SceneError, UnstableRun, refuse
 from rsmpm_ti.output.folder import prepare, write_record
 from rsmpm_ti.records.result import Progress, Result
 from rsmpm_ti.records.tables import Column
 from rsmpm_ti.run.finish import finish
 from rsmpm_ti.run.interrupt import asked_to_stop
 from rsmpm_ti.run.settings import CHECKPOINT_S, Settings
+from rsmpm_ti.spec.review.sentences import review
 from rsmpm_ti.spec.scene import Scene
 
 
@@ -41,6 +43,7 @@ def simulate(
     row; columns: more columns of the history (`Column`); observers: more observers (`Observer`), whose states a
     checkpoint keeps, to be given again, in the same order, to a run that resumes. Ctrl-C and SIGTERM stop after the
     step and still write what there is.
+    What is hard to believe in the scene comes as RockWarning, a sentence each.
     Raises SceneError for input that cannot be run, before anything compiles, and when files cannot be written any
     more, and after writing everything up to there UnstableRun, or ObserverError where a column or observer raised.
     """
@@ -52,6 +55,8 @@ def simulate(
     if resume and out is None:
         raise refuse("resume", resume, "False without an output folder", "give the folder of the run as `out`")
     seeds, kept = scene.particles(), None
+    for sentence in review(scene, seeds):
+        warnings.warn(sentence, RockWarning, stacklevel=2)
     if out is None:
         return Run(scene, seeds, None, settings).go()
     if resume:
@@ -98,7 +103,7 @@ class Run:
         self.drive = Drive(self.scene, seeds, real, gpu, self.settings.deterministic)
         self.sim, self.clock = self.drive.sim, self.drive.clock
         self.history = History(self.sim, self.clock, self.drive.survey, self.settings.columns)
-        self.row_steps = max(1, self.clock.total // self.scene.schedule.rows)
+        self.row_steps = self.scene.row_steps
         self.watches = self._observers()
         self.wall_before, self.resumed = 0.0, kept is not None
         self.interrupted = threading.Event()

@@ -1,12 +1,22 @@
 """Every verification case by name."""
 
 from rsmpm_ti.cases.case import Case
-from rsmpm_ti.verify.elastic import bodies, disc, hole, manufactured, relaxation, slit_field, specimen, waves
+from rsmpm_ti.verify.elastic import (
+    bodies,
+    disc,
+    hole,
+    manufactured,
+    open_slit,
+    relaxation,
+    slit_field,
+    specimen,
+    waves,
+)
 from rsmpm_ti.verify.strength import cracked_cell, envelope, failed_cell, first_failure, triaxial, weibull
 
 MODULES = (
     waves, bodies, relaxation, manufactured, specimen, triaxial, envelope, failed_cell, cracked_cell, disc, hole,
-    slit_field, first_failure, weibull,
+    slit_field, open_slit, first_failure, weibull,
 )  # fmt: skip
 
 CASES: dict[str, Case] = {case.name: case for module in MODULES for case in module.CASES}
