@@ -1,15 +1,17 @@
 """The end of a run: what broke is measured, numbers are summed up, and everything that can be written is written."""
 
 import time
+import warnings
 
 from rsmpm_ti.analysis.fracture import Fracture, measure_fracture
 from rsmpm_ti.analysis.summary import summarise
-from rsmpm_ti.errors import ObserverError, SceneError
+from rsmpm_ti.errors import ObserverError, RockWarning, SceneError
 from rsmpm_ti.output.files import write_events, write_history
 from rsmpm_ti.output.folder import write_all
 from rsmpm_ti.output.fracture_tables import write_fracture
 from rsmpm_ti.records.files import write_json
 from rsmpm_ti.records.result import Result
+from rsmpm_ti.solver.damping import damping_said, viscous_energy
 
 
 def finish(run, stopped: str, failure: Exception | None) -> Result:
@@ -27,6 +29,9 @@ def finish(run, stopped: str, failure: Exception | None) -> Result:
         write_all(
             [*_writes(run, view, fracture, failure), sum_up, lambda: write_json(run.out / "summary.json", summary)]
         )
+    viscous = viscous_energy(run.drive.sim)
+    for sentence in damping_said(run.scene, view.history, run.history.energy_start, viscous):
+        warnings.warn(sentence, RockWarning, stacklevel=4)  # of who called `simulate`
     return Result(
         history=view.history, summary=summary, events=view.events, fracture=fracture, snapshot=view.snapshot,
         out=run.out, stopped=stopped,
