@@ -7,8 +7,8 @@ Their stiffness kappa E'/dx per area holds up an opening crack: with the mean op
 length 2a in a field sigma (Westergaard 1939, J. Appl. Mech. 6:A49), springs in parallel carry kappa pi a/dx of what the
 crack still lets go. A light node between the faces may do so, as its gradient is not light.
 
-When it fails: it knows one slit at a time, and no bridge but through nodes; a removed region of another kind, such as a
-thin `Box`, is not checked.
+A `Box` that is cut out is a slit along the grid. When it fails: it knows one slit at a time, and no removed region of
+another kind; two bodies with a gap between them are tied in the same way, and are not checked.
 """
 
 import itertools
@@ -18,7 +18,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from rsmpm_ti.errors import SceneError
-from rsmpm_ti.spec.regions import Slit
+from rsmpm_ti.spec.regions import Box, Slit, cuts_of
 from rsmpm_ti.spec.seeding import Seeds
 
 TIED_FRACTION = 0.03
@@ -133,7 +133,26 @@ class _Strips:
         return 0.5 * float(moved @ (stiffness @ moved)), float(largest.max(initial=0.0))
 
 
-def check_slit(region, slit: Slit, seeding, shape, dx: float, origin: np.ndarray) -> None:
+def check_cuts(body, shape, dx: float, origin: np.ndarray) -> None:
+    """Refuse a `Body` with a slit, or a box cut out of it like one, whose faces are tied."""
+    for whole, part in cuts_of(body.region):
+        if isinstance(part, Slit):
+            check_slit(body.region, part, body.seeding, shape, dx, origin)
+        elif isinstance(part, Box) and (slit := _as_slit(whole, part)) is not None:
+            check_slit(body.region, slit, body.seeding, shape, dx, origin, f"box.upper = {part.upper}: its width")
+
+
+def _as_slit(whole, box: Box) -> Slit | None:
+    """A box that goes through the thickness as a slit of the same outline."""
+    low, high = whole.bounds()
+    if np.any(np.array(box.lower[2:]) > low[2:]) or np.any(np.array(box.upper[2:]) < high[2:]):
+        return None
+    edges = [b - a for a, b in zip(box.lower[:2], box.upper[:2], strict=True)]
+    centre = tuple(0.5 * (a + b) for a, b in zip(box.lower[:2], box.upper[:2], strict=True))
+    return Slit(centre=centre, length=max(edges), width=min(edges), angle=0.0 if edges[0] >= edges[1] else 90.0)
+
+
+def check_slit(region, slit: Slit, seeding, shape, dx: float, origin: np.ndarray, name: str = "slit.width") -> None:
     """Refuse a slit whose faces stay tied through shared nodes, naming a width that would do."""
     tie = _tie_of_width(region, slit, slit.width, seeding, shape, dx, origin)
     if tie.parted:
@@ -142,12 +161,12 @@ def check_slit(region, slit: Slit, seeding, shape, dx: float, origin: np.ndarray
         width = cells * dx
         if width > slit.width and _tie_of_width(region, slit, width, seeding, shape, dx, origin).parted:
             raise SceneError(
-                f"slit.width = {slit.width:.6g} m is refused: at {slit.angle:g} degrees its faces share nodes, which "
+                f"{name} = {slit.width:.6g} m is refused: at {slit.angle:g} degrees its faces share nodes, which "
                 f"pass on {100.0 * tie.passed:.2g} % of the stress (at most {100.0 * TIED_FRACTION:g} %) and load the "
                 f"faces by {tie.highest:.2g} of the tips' stress (at most {TIP_FRACTION:g}): it would be a weak "
                 f"inclusion and no flaw; use a width of at least {width:.6g} m ({cells:g} cells) or a finer dx"
             )
-    raise SceneError(f"slit.width = {slit.width:.6g} m is refused: no width up to 6 cells separates its faces")
+    raise SceneError(f"{name} = {slit.width:.6g} m is refused: no width up to 6 cells separates its faces")
 
 
 def _tie_of_width(region, slit: Slit, width: float, seeding, shape, dx: float, origin: np.ndarray) -> Tie:

@@ -12,7 +12,7 @@ from rsmpm_ti.spec import slit_check
 from rsmpm_ti.spec.regions import Box, Difference, Disc, Slit, Union, slits_of
 from rsmpm_ti.spec.scene import Body
 from rsmpm_ti.spec.seeding import Jittered, Lattice
-from rsmpm_ti.spec.slit_check import Tie, check_slit, slit_tie
+from rsmpm_ti.spec.slit_check import Tie, check_cuts, check_slit, slit_tie
 
 DX = 0.5e-3
 ORIGIN = np.zeros(2)
@@ -200,6 +200,20 @@ def test_tie_through_one_row_of_nodes_by_hand():
     # the rows' ends give way sideways over a cell or two of 30
     assert energy / (flaw.length / DX) == pytest.approx(0.5 * modulus / 64.0, rel=0.05)
     assert stress == pytest.approx(modulus / 8.0, rel=0.05)
+
+
+@pytest.mark.parametrize("axis", [0, 1])
+def test_box_cut_out_like_a_slit_is_held_to_the_same(axis):
+    def notched(width: float) -> Body:
+        edges = [0.5 * width, 7.5e-3] if axis == 0 else [7.5e-3, 0.5 * width]
+        low, high = (tuple(c + side * e for c, e in zip((0.025, 0.05), edges, strict=True)) for side in (-1.0, 1.0))
+        return Body(region=Difference(whole=BLOCK, removed=(Box(lower=low, upper=high),)))
+
+    with pytest.raises(SceneError, match=r"box\.upper = .* its width = 0\.001 m is refused.* at least 0\.001375 m"):
+        check_cuts(notched(1.0e-3), QuadraticBSpline(), DX, ORIGIN)
+    check_cuts(notched(1.5e-3), QuadraticBSpline(), DX, ORIGIN)
+    edge = Difference(whole=BLOCK, removed=(Box(lower=(0.0, 0.02), upper=(0.5e-3, 0.06)),))  # it has one face only
+    check_cuts(Body(region=edge), QuadraticBSpline(), DX, ORIGIN)
 
 
 def test_slits_are_found_however_nested():

@@ -128,8 +128,8 @@ def check_platens(scene, seeds: list[Seeds]) -> None:
     for k, platen, room, nearest in _rooms(scene, seeds):
         if room < -BEYOND * scene.domain.dx:
             end = platen.position + (room if platen.side == "lower" else -room)
-            allowed = f"at the end of the bodies: bodies[{nearest}] reaches {-room:.4g} m beyond this platen"
-            raise refuse(f"boundaries[{k}].position", platen.position, allowed, f"its end is at {end:.6g} m")
+            allowed = f"at the end of the bodies: bodies[{nearest}] reaches {-room:.3g} m beyond this platen"
+            raise refuse(f"boundaries[{k}].position", platen.position, allowed, f"its end is at {end:.4g} m")
 
 
 def platens_said(scene, seeds: list[Seeds]) -> list[str]:

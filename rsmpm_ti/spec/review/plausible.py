@@ -131,8 +131,9 @@ def _mistaken(path: str, value: float, rock: Range) -> str:
 
 def _number(value: float, size: float) -> str:
     """17 in GPa as one would write it in SI: 17e9, and of angles and densities the number itself."""
-    power = round(math.log10(size)) if size > 0.0 else 0
-    return f"{value:g}e{power}" if power >= 6 and math.isclose(size, 10.0**power) else f"{value * size:.4g}"
+    power = round(math.log10(size))
+    by_power = power >= 6 and value < 1000.0 and math.isclose(size, 10.0**power)
+    return f"{value:g}e{power}" if by_power else f"{value * size:.4g}"
 
 
 def _si(value: float, rock: Range) -> str:
