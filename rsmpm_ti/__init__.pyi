@@ -1,6 +1,7 @@
 """The public names of rsmpm_ti and where they are made: read by type checkers, and by `__init__.py` to load them."""
 
 from .errors import ObserverError as ObserverError
+from .errors import RockWarning as RockWarning
 from .errors import SceneError as SceneError
 from .errors import UnstableRun as UnstableRun
 from .method.shape import Gimp as Gimp

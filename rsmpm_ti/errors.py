@@ -1,4 +1,4 @@
-"""What can go wrong, as exceptions: a scene that cannot be run, a run that became unstable, an observer that failed."""
+"""What can go wrong: a scene that cannot be run, one that is hard to believe, an unstable run, a failed observer."""
 
 
 class SceneError(ValueError):
@@ -31,6 +31,13 @@ class BrokenApart(UnstableRun):
     """Rock that has failed is beyond what can be followed, or pieces have left the domain; nothing else is wrong.
 
     After a peak that is how a specimen ends, and the run a result (status 0); before one it is an unstable run.
+    """
+
+
+class RockWarning(UserWarning):
+    """Something in a scene is hard to believe, or means something else than it seems to; the run goes on.
+
+    `simulate` warns by Python's warnings; commands print the sentences on stderr.
     """
 
 

@@ -3,15 +3,19 @@
 import argparse
 import math
 import sys
+import warnings
 from dataclasses import replace
 from pathlib import Path
 
-from rsmpm_ti.errors import SceneError, UnstableRun, shown
+from rsmpm_ti.errors import RockWarning, SceneError, UnstableRun, shown
 from rsmpm_ti.spec.loader import available, find, keywords_of, load_scene, scene_name
 from rsmpm_ti.spec.mass_scaling import estimate
+from rsmpm_ti.spec.review.placement import area_errors
+from rsmpm_ti.spec.review.sentences import review
 from rsmpm_ti.spec.scene import Scene
 from rsmpm_ti.spec.scene_checks import memory_of_nodes, memory_of_particles
 from rsmpm_ti.spec.scene_json import schema
+from rsmpm_ti.spec.seeding import Seeds
 
 STATUSES = (
     "Exit status: 0 done, also where the load fell or the specimen burst after its peak; 2 input refused, or a file "
@@ -79,20 +83,22 @@ def build(options: argparse.Namespace) -> Scene:
         output = replace(output, painter=options.painter)
     schedule = scene.schedule
     if options.quick and "schedule.rows" not in settings:
-        schedule = replace(schedule, rows=min(schedule.rows, QUICK_ROWS))
+        schedule = replace(schedule, rows=min(schedule.rows or QUICK_ROWS, QUICK_ROWS))
     scene = replace(scene, output=output, schedule=schedule)
     return scene.elastic() if options.elastic else scene
 
 
 def describe(scene: Scene) -> str:
     """What would be run, as `--check` prints it."""
-    count = sum(len(body.x) for body in scene.particles())
+    seeds = scene.particles()
+    count = sum(len(body.x) for body in seeds)
     nodes = math.prod(scene.domain.node_counts)
     memory = (memory_of_particles(scene, count) + memory_of_nodes(scene)) / 1e6
     seconds = count * scene.steps / PARTICLE_STEPS_PER_S
     rows = (
         ("scene", scene.title),
         ("particles", f"{count}"),
+        *area(scene, seeds),
         ("grid nodes", f"{nodes} ({scene.domain.grid}), dx = {1e3 * scene.domain.dx:g} mm"),
         ("memory", f"about {memory:.0f} MB of fields"),
         ("method", f"{scene.order}, {type(scene.shape).__name__}, {type(scene.transfer).__name__}"),
@@ -102,6 +108,13 @@ def describe(scene: Scene) -> str:
         ("estimate", f"about {seconds:.0f} s of solving, and painting"),
     )
     return "\n".join(f"{name:<12}{value}" for name, value in rows)
+
+
+def area(scene: Scene, seeds: list[Seeds]) -> tuple[tuple[str, str], ...]:
+    """How far the particles' area is off that of their regions, where it is known."""
+    worst = max(area_errors(scene, seeds), key=abs)
+    text = f"of a body's particles {round(100.0 * worst, 4) + 0.0:+.2g} % off that of its region, at most"
+    return () if math.isnan(worst) else (("area" if scene.dim == 2 else "volume", text),)
 
 
 def expectation(scene: Scene) -> tuple[tuple[str, str], ...]:
@@ -142,14 +155,24 @@ def main(arguments: list[str] | None = None) -> int:
         scene = build(options)
         if options.check:
             print(describe(scene))
+            for sentence in review(scene, scene.particles()):
+                say(sentence)
             return 0
-        return run(scene, options)
+        with warnings.catch_warnings():
+            warnings.simplefilter("always", RockWarning)
+            warnings.showwarning = lambda message, *_, **__: say(message)
+            return run(scene, options)
     except SceneError as error:
         print(f"rsmpm_ti: {' '.join(str(error).split())}", file=sys.stderr)
         return 2
     except UnstableRun as error:
         print(f"rsmpm_ti: the run became unstable: {error}", file=sys.stderr)
         return 3
+
+
+def say(sentence: object) -> None:
+    """A warning, on stderr."""
+    print(f"rsmpm_ti: warning: {' '.join(str(sentence).split())}", file=sys.stderr)
 
 
 def run(scene: Scene, options: argparse.Namespace) -> int:

@@ -60,7 +60,7 @@ def timed_run(drive: Drive) -> float:
 
 def slit(setting: Setting, real) -> Measure:
     """rms error of sigma_1 over nominal stress against finite elements, as a scene loads it: at the paper's rate, with
-    mass scaling. Slit of 2 mm, two cells of the coarsest grid."""
+    mass scaling. Slit of 2 mm, three cells of the coarsest grid."""
     scene = slit_specimen(0.1 / setting.cells, 2e-3, setting.functions, Lattice(
         particles_per_axis=setting.per_axis, fitted=setting.fitted))  # fmt: skip
     loading = replace(scene.loading, time_scale=setting.time_scale)

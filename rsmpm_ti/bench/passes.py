@@ -1,4 +1,5 @@
-"""`bench passes`: where the time of a step goes. Parts of the one kernel that a step is, each compiled by itself."""
+"""`bench passes`: where the time of a step goes. Parts of the one kernel that a step is, each compiled by itself; and
+what the rows of a history cost."""
 
 import statistics
 import time
@@ -39,4 +40,32 @@ def passes(shape: str, threads: int, rounds: int) -> str:
     scale = 1e9 / sim.particles.count
     lines = [f"{shape}, musl, f64, {threads} thread(s), 80 000 particles, median of {rounds} rounds [ns per particle]"]
     lines += [f"{name:<36}{scale * statistics.median(times):>8.1f}" for name, times in seconds.items()]
+    lines += [f"{f'steps, a row every {n}':<36}{scale * s:>8.1f}" for n, s in _rows(shape, real, rounds)]
     return "\n".join(lines)
+
+
+ROW_EVERY, ROW_SPAN = (1, 5, 10, 20, 50), 50
+"""Steps between two rows, and steps of one measurement."""
+
+
+def _rows(shape: str, real, rounds: int) -> list[tuple[int, float]]:
+    """(steps between two rows, median seconds of a step with its part of a row), by the processor's clock: a row is a
+    millisecond, and other processes take as long."""
+    import taichi as ti
+
+    from rsmpm_ti.bench.workers import Runner, simulation
+    from rsmpm_ti.solver.history import History
+
+    drive = simulation(Runner("solver", shape), real)
+    history = History(drive.sim, drive.clock, drive.survey)
+    seconds: dict[int, list[float]] = {n: [] for n in ROW_EVERY}
+    drive.advance(1)
+    for _ in range(max(1, rounds // 5)):
+        for n in ROW_EVERY:
+            start = time.process_time()
+            for _ in range(ROW_SPAN // n):
+                drive.advance(n)
+                history.record(drive.survey)
+            ti.sync()
+            seconds[n].append((time.process_time() - start) / ROW_SPAN)
+    return [(n, statistics.median(times)) for n, times in seconds.items()]

@@ -11,6 +11,7 @@ from rsmpm_ti.output.fracture_tables import write_fracture
 from rsmpm_ti.records.files import write_json
 from rsmpm_ti.records.result import Result
 from rsmpm_ti.run.warnings import kinetic_share_after, warnings_of
+from rsmpm_ti.solver.damping import damping_said, viscous_energy
 
 
 def finish(run, stopped: str, failure: Exception | None) -> Result:
@@ -83,4 +84,6 @@ def numbers_of(run, view, fracture: Fracture, speed: float, stopped: str) -> dic
         "stopped": stopped,
     }
     beside = [writer.warning] if writer is not None and writer.warning else []
-    return numbers | {"warnings": warnings_of(run.scene, numbers, view.history, view.events) + beside}
+    found = warnings_of(run.scene, numbers, view.history, view.events)
+    damped = damping_said(run.scene, view.history, run.history.energy_start, viscous_energy(run.sim))
+    return numbers | {"warnings": [*run.said, *found, *damped, *beside]}

@@ -2,19 +2,21 @@
 
 import os
 import time
+import warnings
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
 from rsmpm_ti.analysis.load_curve import FilteredLoad
 from rsmpm_ti.backend.start import start_taichi
-from rsmpm_ti.errors import BrokenApart, ObserverError, SceneError, UnstableRun, refuse
+from rsmpm_ti.errors import BrokenApart, ObserverError, RockWarning, SceneError, UnstableRun, refuse
 from rsmpm_ti.output.folder import prepare, write_record
 from rsmpm_ti.records.result import Progress, Result
 from rsmpm_ti.records.tables import Column
 from rsmpm_ti.run.finish import finish
 from rsmpm_ti.run.interrupt import Interrupt, asked_to_stop
 from rsmpm_ti.run.settings import CHECKPOINT_S, Settings
+from rsmpm_ti.spec.review.sentences import review
 from rsmpm_ti.spec.scene import Scene
 
 
@@ -41,6 +43,7 @@ def simulate(
     row; columns: more columns of the history (`Column`); observers: more observers (`Observer`), whose states a
     checkpoint keeps, to be given again, in the same order, to a run that resumes. Ctrl-C and SIGTERM stop after the
     step and still write what there is. A specimen that bursts after its peak ends the run, which is then a result.
+    What is hard to believe in the scene comes as RockWarning, a sentence each, before it starts.
     Raises SceneError for input that cannot be run, before anything compiles, and when files cannot be written any
     more, and after writing everything up to there UnstableRun, or ObserverError where a column or observer raised.
     """
@@ -52,13 +55,16 @@ def simulate(
     if resume and out is None:
         raise refuse("resume", resume, "False without an output folder", "give the folder of the run as `out`")
     seeds, kept = scene.particles(), None
+    said = review(scene, seeds)
+    for sentence in said:
+        warnings.warn(sentence, RockWarning, stacklevel=2)
     if out is None:
-        return Run(scene, seeds, None, settings).go()
+        return Run(scene, seeds, None, settings, said=said).go()
     if resume:
         from rsmpm_ti.run.checkpoint import read
 
         kept = read(Path(out), settings.identity(scene))
-    return Run(scene, seeds, prepare(scene, out, keep=kept is not None), settings, kept).go()
+    return Run(scene, seeds, prepare(scene, out, keep=kept is not None), settings, kept, said).go()
 
 
 def _tuple(entries):
@@ -69,11 +75,12 @@ def _tuple(entries):
 class Run:
     """One run: the loop, and what is written when. Starts Taichi.
 
-    kept: arrays of the checkpoint from which it goes on, None for a run from the start.
+    kept: arrays of the checkpoint from which it goes on, None for a run from the start; said: what of the scene is hard
+    to believe, in sentences.
     """
 
-    def __init__(self, scene: Scene, seeds, out: Path | None, settings: Settings, kept=None):
-        self.scene, self.out, self.settings = scene, out, settings
+    def __init__(self, scene: Scene, seeds, out: Path | None, settings: Settings, kept=None, said=()):
+        self.scene, self.out, self.settings, self.said = scene, out, settings, said
         self.writer: Any = None  # an output.writer.Writer where files are written, imported only then: it needs Taichi
         self.begun = time.perf_counter()
         if out is not None:  # first, since it gets ready while kernels compile here
@@ -98,7 +105,7 @@ class Run:
         self.drive = Drive(self.scene, seeds, real, gpu, self.settings.deterministic)
         self.sim, self.clock = self.drive.sim, self.drive.clock
         self.history = History(self.sim, self.clock, self.drive.survey, self.settings.columns)
-        self.row_steps = max(1, self.clock.total // self.scene.schedule.rows)
+        self.row_steps = self.scene.row_steps
         self.watches = self._observers()
         self.wall_before, self.resumed = 0.0, kept is not None
         self.interrupt, self.ending, self.followed = Interrupt(), "", True

@@ -1,7 +1,7 @@
 """Regions of space that bodies fill: `contains(x)` in NumPy. Lengths in metres, angles in degrees.
 
 Combine with `Union` and `Difference`. A slit is a region like any other; what makes it a flaw is that the particles
-in it are removed and that its faces really separate, which `slit_check.slit_bridge` checks.
+in it are removed and that its faces really separate, which `slit_check.slit_tie` measures.
 """
 
 import math
@@ -174,11 +174,27 @@ Region = Annotated[Box | Disc | Slit | Union | Difference, ByType]
 """What a recorded scene or the command line may give as a region; a scene file may bring its own."""
 
 
+def parts_of(region) -> int:
+    """How many regions a region is made of, itself included."""
+    return 1 + sum(map(parts_of, _parts(region)))
+
+
+def cuts_of(region) -> tuple:
+    """(what it is cut from, what is cut) for every region that another one lacks, however nested."""
+    if isinstance(region, Union):
+        return tuple(cut for part in region.parts for cut in cuts_of(part))
+    if isinstance(region, Difference):
+        return cuts_of(region.whole) + tuple((filled(region.whole), part) for part in region.removed)
+    return ()
+
+
+def filled(region):
+    """A region with all that is cut from it put back."""
+    if isinstance(region, Union):
+        return Union(parts=tuple(map(filled, region.parts)))
+    return filled(region.whole) if isinstance(region, Difference) else region
+
+
 def slits_of(region) -> tuple[Slit, ...]:
     """Every slit cut from a region, however nested."""
-    if isinstance(region, Union):
-        return tuple(slit for part in region.parts for slit in slits_of(part))
-    if isinstance(region, Difference):
-        cuts = tuple(part for part in region.removed if isinstance(part, Slit))
-        return slits_of(region.whole) + cuts
-    return ()
+    return tuple(part for _, part in cuts_of(region) if isinstance(part, Slit))

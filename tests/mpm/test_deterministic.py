@@ -8,7 +8,7 @@ from rsmpm_ti import load_scene, simulate
 SMALL = {
     "cube": {
         "dx": 2e-3,
-        "flaw_width": 4e-3,
+        "flaw_width": 6e-3,
         "time_scale": 16.0,
         "settings": {"shape": "Linear", "schedule.rows": "30"},
     },

@@ -26,7 +26,7 @@ RUN = [
     "--set",
     "dx=0.002",
     "--set",
-    "flaw_width=0.004",
+    "flaw_width=0.006",
     "--set",
     "time_scale=16",
     "--set",

@@ -4,15 +4,15 @@ import re
 
 import numpy as np
 import pytest
-from exact import shape_function
 from harness import name_of, variants
 
 from rsmpm_ti.errors import SceneError
 from rsmpm_ti.method.shape import Gimp, Linear, QuadraticBSpline
+from rsmpm_ti.spec import slit_check
 from rsmpm_ti.spec.regions import Box, Difference, Disc, Slit, Union, slits_of
 from rsmpm_ti.spec.scene import Body
 from rsmpm_ti.spec.seeding import Jittered, Lattice
-from rsmpm_ti.spec.slit_check import check_slit, slit_bridge
+from rsmpm_ti.spec.slit_check import Tie, check_cuts, check_slit, slit_tie
 
 DX = 0.5e-3
 ORIGIN = np.zeros(2)
@@ -121,20 +121,22 @@ def test_jitter_never_enters_a_slit_nor_leaves_the_body(angle):
     assert BLOCK.contains(x).all()
 
 
-@pytest.mark.parametrize(
-    "flaw, shape",
-    [
-        (slit(1.0e-3), Linear()),
-        (slit(1.0e-3, 90.0), Linear()),
-        (slit(1.0e-3, 0.0), Linear()),
-        (slit(1.5e-3), QuadraticBSpline()),
-        (slit(2.0e-3), QuadraticBSpline()),
-        (slit(2.0e-3), Gimp()),
-    ],
-    ids=str,
-)
-def test_wide_slit_is_a_flaw(flaw, shape):
+APART = [(Linear(), 2.0, 2.5), (Gimp(), 2.0, 2.5), (QuadraticBSpline(), 3.0, 3.0)]
+"""Cells across a slit along the grid, and at any angle, that part its faces on a lattice of two particles per axis."""
+
+
+@pytest.mark.parametrize("angle", [0.0, 20.0, 30.0, 45.0, 90.0])
+@pytest.mark.parametrize("shape, along_grid, turned", APART, ids=str)
+def test_wide_slit_is_a_flaw(angle, shape, along_grid, turned):
+    flaw = slit((turned if angle % 90.0 else along_grid) * DX, angle)
     check_slit(cut(flaw), flaw, Lattice(), shape, DX, ORIGIN)
+
+
+def remedy(flaw, seeding, shape) -> float:
+    """The width that the refusal of a slit names [m]."""
+    with pytest.raises(SceneError, match=r"slit\.width = .* is refused") as refused:
+        check_slit(cut(flaw), flaw, seeding, shape, DX, ORIGIN)
+    return float(re.search(r"a width of at least (\S+) m", str(refused.value))[1])
 
 
 @pytest.mark.parametrize(
@@ -143,38 +145,75 @@ def test_wide_slit_is_a_flaw(flaw, shape):
         (slit(0.25e-3), Linear()),
         (slit(0.5e-3), Linear()),
         (slit(0.5e-3, 90.0), Linear()),
+        (slit(1.0e-3), Linear()),
+        (slit(1.0e-3, 0.0), QuadraticBSpline()),
+        (slit(1.0e-3, 90.0), QuadraticBSpline()),
         (slit(1.0e-3), QuadraticBSpline()),
         (slit(0.5e-3), QuadraticBSpline()),
         (slit(0.5e-3), Gimp()),
+        (slit(1.0e-3), Gimp()),
     ],
     ids=str,
 )
 @every_seeding
 def test_narrow_slit_is_refused_with_a_width_that_passes(flaw, shape, seeding):
-    with pytest.raises(SceneError, match=r"slit\.width = .* is refused") as refused:
-        check_slit(cut(flaw), flaw, seeding, shape, DX, ORIGIN)
-    width = float(re.search(r"a width of at least (\S+) m", str(refused.value))[1])
+    width = remedy(flaw, seeding, shape)
     assert flaw.width < width <= 2.5e-3
     better = slit(width, flaw.angle)
     check_slit(cut(better), better, seeding, shape, DX, ORIGIN)
 
 
+def test_finer_cells_tie_a_flaw_of_as_many_cells_more():
+    """What springs of a layer of cells hold back is what a longer crack would let go: kappa pi a/dx."""
+    tie = {}
+    for dx in (1e-3, 0.5e-3):
+        flaw = slit(2.0 * dx, 0.0)
+        seeds = Lattice().fill(cut(flaw), ORIGIN, dx)
+        tie[dx] = slit_tie(seeds, flaw, QuadraticBSpline(), dx, ORIGIN).passed
+    springs = {dx: passed / (1.0 - passed) for dx, passed in tie.items()}
+    assert springs[0.5e-3] == pytest.approx(2.0 * springs[1e-3], rel=0.02)  # ends of the strips: a cell of 30
+
+
 @pytest.mark.parametrize("shape", [Linear(), Gimp(), QuadraticBSpline()], ids=name_of)
 @pytest.mark.parametrize("angle", [0.0, 20.0, 45.0])
-def test_bridge_is_the_mass_that_a_plain_loop_finds_on_shared_nodes(shape, angle):
-    flaw, body = slit(1.0e-3, angle), Box(lower=(0.015, 0.04), upper=(0.035, 0.06))
-    seeds = Lattice().fill(Difference(whole=body, removed=(flaw,)), ORIGIN, DX)
-    x = seeds.x
-    side = flaw.frame(x)[:, 1] > 0.0
-    nodes = np.stack(np.meshgrid(np.arange(120), np.arange(140), indexing="ij"), axis=-1) * DX
-    reach = 0.5 * shape.width * DX
-    worst = 0.0
-    for node in nodes[30:72, 80:122].reshape(-1, 2):
-        along, across = np.abs(flaw.frame(node[None])[0])
-        if along < 0.5 * flaw.length - np.sqrt(2.0) * reach and across < 2.0e-3:
-            w = np.prod([shape_function(shape)((x[:, d] - node[d]) / DX)[0] for d in range(2)], axis=0)
-            worst = max(worst, min(w[side].sum(), w[~side].sum()) / 4.0)
-    assert slit_bridge(seeds, flaw, shape, DX, ORIGIN) == pytest.approx(worst, abs=1e-12)
+def test_faces_without_a_node_in_common_are_free(shape, angle):
+    flaw = slit(4.5 * DX, angle)  # corners of a stencil reach 1.5 sqrt(2) = 2.1 cells on both sides
+    assert slit_tie(Lattice().fill(cut(flaw), ORIGIN, DX), flaw, shape, DX, ORIGIN) == Tie(0.0, 0.0)
+
+
+def test_tie_through_one_row_of_nodes_by_hand():
+    """Two cells along the grid, B-splines: rows at 1.25 cells from the axis reach its nodes with w' = 1/4 per cell.
+
+    Held at the next nodes, a unit apart, the middle stays: strain 1/8 in the rows, half a cell deep on both sides,
+    whose modulus is lambda + 2 mu. Energy per length: 2 x 1/2 x 1/2 x M/64.
+    """
+    flaw = slit(2.0 * DX, 0.0)
+    x = Lattice().fill(cut(flaw), ORIGIN, DX)
+    frame = flaw.frame(x.x)
+    near = (np.abs(frame[:, 0]) < 0.5 * flaw.length) & (np.abs(frame[:, 1]) < 1.4 * DX)  # the row of both faces alone
+    strips = slit_check._Strips(x.x[near], x.volume[near] / DX**2, QuadraticBSpline(), DX, ORIGIN)
+    across = flaw.frame(strips.nodes)[:, 1]
+    apart = 0.5 * np.sign(np.round(across / DX))[:, None] * np.array([0.0, 1.0])
+    energy, stress = strips.moved(np.abs(across) > 0.5 * DX, apart)
+    nu = slit_check.POISSON
+    modulus = (1.0 - nu) * (1.0 - nu**2) / ((1.0 + nu) * (1.0 - 2.0 * nu))  # over E'
+    # the rows' ends give way sideways over a cell or two of 30
+    assert energy / (flaw.length / DX) == pytest.approx(0.5 * modulus / 64.0, rel=0.05)
+    assert stress == pytest.approx(modulus / 8.0, rel=0.05)
+
+
+@pytest.mark.parametrize("axis", [0, 1])
+def test_box_cut_out_like_a_slit_is_held_to_the_same(axis):
+    def notched(width: float) -> Body:
+        edges = [0.5 * width, 7.5e-3] if axis == 0 else [7.5e-3, 0.5 * width]
+        low, high = (tuple(c + side * e for c, e in zip((0.025, 0.05), edges, strict=True)) for side in (-1.0, 1.0))
+        return Body(region=Difference(whole=BLOCK, removed=(Box(lower=low, upper=high),)))
+
+    with pytest.raises(SceneError, match=r"box\.upper = .* its width = 0\.001 m is refused.* at least 0\.001375 m"):
+        check_cuts(notched(1.0e-3), QuadraticBSpline(), DX, ORIGIN)
+    check_cuts(notched(1.5e-3), QuadraticBSpline(), DX, ORIGIN)
+    edge = Difference(whole=BLOCK, removed=(Box(lower=(0.0, 0.02), upper=(0.5e-3, 0.06)),))  # it has one face only
+    check_cuts(Body(region=edge), QuadraticBSpline(), DX, ORIGIN)
 
 
 def test_slits_are_found_however_nested():

@@ -15,7 +15,7 @@ from scipy.sparse.linalg import spsolve
 
 from rsmpm_ti import Lattice, Linear, load_scene
 from rsmpm_ti.spec.regions import slits_of
-from rsmpm_ti.verify.strength.first_failure import MODULUS_RATIO, STATIC
+from rsmpm_ti.verify.strength.first_failure import MODULUS_RATIO, STATIC, WIDTH
 
 
 def static_solution(name: str, **keywords) -> tuple[float, float, np.ndarray]:
@@ -73,13 +73,13 @@ def gradients(xi: np.ndarray, shape: tuple[int, int], dx: float) -> coo_array:
 
 
 def test_static_solution_of_the_slit_cube():
-    stress, modulus, position = static_solution("cube", flaw_width=1e-3)
+    stress, modulus, position = static_solution("cube", flaw_width=WIDTH["cube"])
     assert stress == pytest.approx(STATIC["cube"][0], rel=1e-3)  # three digits were kept
     assert position == pytest.approx(STATIC["cube"][1], abs=5e-3)
     assert modulus == pytest.approx(MODULUS_RATIO, abs=5e-5)
 
 
 def test_static_solution_of_the_slit_disc():
-    stress, _, position = static_solution("disc")
+    stress, _, position = static_solution("disc", flaw_width=WIDTH["disc"])
     assert stress == pytest.approx(STATIC["disc"][0], rel=1e-3)
     assert position == pytest.approx(STATIC["disc"][1], abs=1e-2)

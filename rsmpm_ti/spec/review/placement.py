@@ -1,0 +1,202 @@
+"""Whether what a scene puts somewhere is where it does something: flaws, bodies and platens. NumPy only.
+
+What may be meant is said; what cannot be is refused: see `sentences.py` and `Scene.particles`.
+"""
+
+import itertools
+import math
+
+import numpy as np
+
+from rsmpm_ti.errors import SceneError, refuse
+from rsmpm_ti.spec.boundaries import Platen
+from rsmpm_ti.spec.regions import Box, Disc, Slit, cuts_of, parts_of
+from rsmpm_ti.spec.seeding import Seeds
+
+SHARED_FRACTION = 1e-3
+"""Fraction of the smaller of two bodies that may lie in the other: particles fitted to a common curved edge sit at
+centroids, which may be beyond it."""
+
+BEYOND = 0.5
+"""Cells by which a body may reach beyond a platen: what lies between its plane and the next node feels the platen."""
+
+AWAY = 1.0
+"""Cells between a platen and the nearest particle's edge from which on it touches nothing: stencils reach so far."""
+
+AREA_ERROR = 0.005
+"""Error of the particles' area (volume in 3D) above which it is said: by as much loads and masses are wrong."""
+
+SAMPLES = 2**17
+"""Points by which a region is measured. A Kronecker sequence errs by some 1e-5 for a disc, 1e-4 for a ball."""
+
+
+MAX_PARTS = 50
+"""Regions in a region, and bodies of such regions, that are measured by counting: 10 ms each."""
+
+
+def check_overlap(scene, seeds: list[Seeds]) -> None:
+    """Refuse two bodies in one place: there would be two rocks in it, twice as stiff, heavy and strong."""
+    bounds = np.array([body.region.bounds() for body in scene.bodies])
+    slack = 1e-9 * scene.domain.dx
+    for k in range(1, len(bounds)):
+        meets = np.all((bounds[:k, 1] > bounds[k, 0] + slack) & (bounds[:k, 0] < bounds[k, 1] - slack), axis=1)
+        for j in map(int, np.flatnonzero(meets)):
+            both = max(_inside(scene, seeds, k, j), _inside(scene, seeds, j, k))
+            smaller = min(seeds[j].volume.sum(), seeds[k].volume.sum())
+            if both > SHARED_FRACTION * smaller:
+                raise SceneError(
+                    f"bodies[{k}].region overlaps bodies[{j}].region: {100.0 * both / smaller:.3g} % of the smaller "
+                    f"one lies in the other, so that there would be two rocks in one place; move one, cut it by "
+                    f"Difference, or make them one body, Union(parts=(...))"
+                )
+
+
+def _inside(scene, seeds: list[Seeds], mine: int, other: int) -> float:
+    """Volume of the particles of a body that lie in the region of another [m^dim]."""
+    x, region = seeds[mine].x, scene.bodies[other].region
+    low, high = region.bounds()
+    near = np.flatnonzero(np.all((x > low) & (x < high), axis=1))
+    return float(seeds[mine].volume[near][region.contains(x[near])].sum()) if len(near) else 0.0
+
+
+def outside_fraction(whole, slit: Slit) -> float:
+    """Fraction of a slit's area that lies out of what it is cut from; in 3D, at every depth."""
+    s = (np.arange(64) + 0.5) / 64.0 - 0.5
+    along, across = np.meshgrid(slit.length * s, slit.width * s[::8], indexing="ij")
+    t = slit.direction
+    points = np.array(slit.centre[:2]) + along.reshape(-1, 1) * t + across.reshape(-1, 1) * np.array([-t[1], t[0]])
+    points = points[slit.contains(points)]
+    low, high = whole.bounds()
+    depths = [low[2] + f * (high[2] - low[2]) for f in (0.05, 0.275, 0.5, 0.725, 0.95)] if len(low) == 3 else [None]
+    held = np.zeros(len(points), dtype=bool)
+    for z in depths:
+        held |= whole.contains(points if z is None else np.column_stack([points, np.full(len(points), z)]))
+    return 1.0 - float(held.mean()) if held.any() else 1.0 - _inside_fraction(whole, slit)
+
+
+def _inside_fraction(whole, slit: Slit) -> float:
+    """Fraction of a slit's area in a region, by counting points where both may be: of a slit so much larger than its
+    region that points of the slit miss it."""
+    low, high = (np.array(bound, dtype=float) for bound in whole.bounds())
+    first, last = slit.bounds()
+    low[:2], high[:2] = np.maximum(low[:2], first), np.minimum(high[:2], last)
+    if np.any(high <= low):
+        return 0.0
+    x = low + _kronecker(SAMPLES, len(low)) * (high - low)
+    both = float(np.mean(slit.contains(x) & whole.contains(x)))
+    return both * float(np.prod((high - low)[:2])) / (slit.length * slit.width)
+
+
+def _flaws(scene):
+    """(body, slit, fraction of it outside) for every slit."""
+    for k, body in enumerate(scene.bodies):
+        for whole, part in cuts_of(body.region):
+            if isinstance(part, Slit):
+                yield k, part, outside_fraction(whole, part)
+
+
+def check_flaws(scene) -> None:
+    """Refuse a slit that is all outside."""
+    for k, slit, outside in _flaws(scene):
+        if outside == 1.0:
+            lower, upper = (bound.tolist() for bound in scene.bodies[k].region.bounds())
+            box = f"in its body, bodies[{k}], whose lower and upper corners are {lower} and {upper} m"
+            raise refuse("slit.centre", slit.centre, box, "it cuts nothing where it is")
+
+
+def flaws_said(scene) -> list[str]:
+    """A flaw that reaches out of its body is a notch, or cuts the body in two."""
+    return [
+        f"the slit at {slit.centre} m, {slit.length:g} m long, reaches out of bodies[{k}]: {100.0 * outside:.2g} % of "
+        f"it lies outside, so it is a notch or cuts the body in two"
+        for k, slit, outside in _flaws(scene)
+        if outside > 0.0
+    ]
+
+
+def _rooms(scene, seeds: list[Seeds]):
+    """(its place in the list, platen, distance from its plane to the nearest body [m], which body) of every platen;
+    negative where a body reaches beyond it."""
+    for k, platen in enumerate(scene.loading.boundaries):
+        if isinstance(platen, Platen):
+            rooms = [_room(scene, platen, body, s) for body, s in zip(scene.bodies, seeds, strict=True)]
+            yield k, platen, min(rooms), int(np.argmin(rooms))
+
+
+def check_platens(scene, seeds: list[Seeds]) -> None:
+    """Refuse a platen in the middle of a body: it would hold the rock beyond its plane."""
+    for k, platen, room, nearest in _rooms(scene, seeds):
+        if room < -BEYOND * scene.domain.dx:
+            end = platen.position + (room if platen.side == "lower" else -room)
+            allowed = f"at the end of the bodies: bodies[{nearest}] reaches {-room:.3g} m beyond this platen"
+            raise refuse(f"boundaries[{k}].position", platen.position, allowed, f"its end is at {end:.4g} m")
+
+
+def platens_said(scene, seeds: list[Seeds]) -> list[str]:
+    """Platens that touch nothing."""
+    said = []
+    for k, platen, room, nearest in _rooms(scene, seeds):
+        if room > (AWAY + 1e-6) * scene.domain.dx:
+            there = "no body lies before its span"
+            if room < math.inf:
+                there = f"the nearest body, bodies[{nearest}], is {room:.4g} m away"
+            said.append(
+                f"boundaries[{k}], the platen at {platen.position:g} m along axis {platen.axis}, touches nothing: "
+                f"{there}"
+            )
+    return said
+
+
+def _room(scene, platen: Platen, body, seed: Seeds) -> float:
+    """Distance from a platen's plane to the edge of the nearest particle before its span [m]; negative: beyond it."""
+    half = 0.5 * scene.domain.dx / body.seeding.particles_per_axis
+    x = seed.x
+    if platen.span is not None:
+        lateral = x[:, 1 if platen.axis == 0 else 0]
+        x = x[(lateral > platen.span[0] - half) & (lateral < platen.span[1] + half)]
+    inward = (x[:, platen.axis] - platen.position) * (1.0 if platen.side == "lower" else -1.0)
+    return float(inward.min(initial=math.inf)) - half
+
+
+def measure(region) -> float:
+    """Area (volume in 3D) of a region: in closed form where it has one, else by counting points; NaN for one of so many
+    parts that counting would take seconds."""
+    low, high = (np.asarray(bound, dtype=float) for bound in region.bounds())
+    box = math.prod(high - low)
+    if isinstance(region, Box):
+        return box
+    if isinstance(region, Disc):
+        return math.pi * region.radius**2 if len(low) == 2 else 4.0 / 3.0 * math.pi * region.radius**3
+    if parts_of(region) > MAX_PARTS:
+        return math.nan
+    x = low + _kronecker(SAMPLES, len(low)) * (high - low)
+    return box * np.count_nonzero(region.contains(x)) / SAMPLES
+
+
+def _kronecker(count: int, dim: int) -> np.ndarray:
+    """Points of [0, 1)^dim that fill it evenly, [count, dim]: fractions of n (g^-1, g^-2, ...), g^(dim + 1) = g + 1."""
+    g = 2.0
+    for _ in range(60):
+        g = (1.0 + g) ** (1.0 / (dim + 1))
+    n = np.arange(1, count + 1)
+    return np.stack([(0.5 + n * g ** -(d + 1.0)) % 1.0 for d in range(dim)], axis=1)
+
+
+def area_errors(scene, seeds: list[Seeds]) -> list[float]:
+    """Particles' area over that of their region, less 1, for each body; NaN where it is not known."""
+    counted = sum(not isinstance(body.region, Box | Disc) for body in scene.bodies)
+    return [
+        math.nan if counted > MAX_PARTS else s.volume.sum() / measure(body.region) - 1.0
+        for body, s in zip(scene.bodies, seeds, strict=True)
+    ]
+
+
+def areas_said(scene, seeds: list[Seeds]) -> list[str]:
+    what = "area" if scene.dim == 2 else "volume"
+    wrong = [(k, error) for k, error in enumerate(area_errors(scene, seeds)) if abs(error) > AREA_ERROR]
+    more = f" (and {len(wrong) - 3} bodies more)" if len(wrong) > 3 else ""
+    return [
+        f"bodies[{k}]: the {what} of its particles is {100.0 * error:+.2g} % off that of its region{more * (n == 2)}; "
+        f"take a finer dx or seeding.fitted = true"
+        for n, (k, error) in enumerate(itertools.islice(wrong, 3))
+    ]

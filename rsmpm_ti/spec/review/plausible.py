@@ -1,0 +1,202 @@
+"""Input that no rock and no quasi-static test has: said in sentences, one a line, and not refused. No side effects.
+
+Ranges are those of intact rock from chalk to quartzite. A value beyond them that another unit would bring back is said
+to look like that unit; `blamed` adds such a cause to a refusal that comes of it.
+"""
+
+import dataclasses
+import math
+from dataclasses import dataclass
+
+from rsmpm_ti.errors import SceneError
+from rsmpm_ti.spec.mass_scaling import estimate
+from rsmpm_ti.spec.regions import Slit, cuts_of
+
+
+@dataclass(frozen=True)
+class Range:
+    """What rock has, in SI: from, to, a unit to show it in with its size, the source, and units it is mistaken for."""
+
+    low: float
+    high: float
+    unit: str
+    size: float
+    source: str
+    mistaken: tuple[tuple[str, float], ...] = ()
+
+    def text(self) -> str:
+        return f"{self.low / self.size:g} to {self.high / self.size:g} {self.unit}"
+
+
+STRESS_UNITS = (("GPa", 1e9), ("MPa", 1e6), ("kPa", 1e3))
+DEERE = "Deere & Miller (1966), AFWL-TR-65-116"
+STRENGTH = "ISRM (1978), Int. J. Rock Mech. Min. Sci. 15:319, grades R0 to R6"
+TOUGHNESS = "K_Ic^2/E with the K_Ic of Zhang (2002), Int. J. Rock Mech. Min. Sci. 39:401"
+HANDBOOK = "Jaeger, Cook & Zimmerman (2007), Fundamentals of Rock Mechanics"
+
+RANGES = {
+    "E": Range(0.1e9, 150e9, "GPa", 1e9, DEERE, STRESS_UNITS[:2]),
+    "nu": Range(0.0, 0.45, "", 1.0, "Gercek (2007), Int. J. Rock Mech. Min. Sci. 44:1"),
+    "density": Range(1000.0, 5000.0, "kg/m^3", 1.0, "Schoen (2015), Physical Properties of Rocks", (("g/cm^3", 1e3),)),
+    "cohesion": Range(0.05e6, 150e6, "MPa", 1e6, STRENGTH, STRESS_UNITS[1:]),
+    "tensile_strength": Range(0.02e6, 40e6, "MPa", 1e6, STRENGTH, STRESS_UNITS[1:]),
+    "friction_angle": Range(10.0, 70.0, "degrees", 1.0, HANDBOOK, (("radians", 180.0 / math.pi),)),
+    "residual_friction_angle": Range(10.0, 60.0, "degrees", 1.0, HANDBOOK, (("radians", 180.0 / math.pi),)),
+    "G_f_I": Range(0.5, 1000.0, "J/m^2", 1.0, TOUGHNESS, (("N/mm", 1e3),)),
+    "G_f_II": Range(0.5, 20000.0, "J/m^2", 1.0, TOUGHNESS, (("N/mm", 1e3),)),
+}
+"""By the name of the field, in whichever law of the rock it stands."""
+
+UCS_RANGE = (0.25e6, 500e6)
+"""Uniaxial compressive strength [Pa]: from the weakest of ISRM (1978) to the strongest quartzites and basalts."""
+
+MODULUS_RATIO = (30.0, 3000.0)
+"""E over uniaxial compressive strength: Deere & Miller (1966) call below 200 low and above 500 high."""
+
+BRITTLENESS = (2.0, 100.0)
+"""Uniaxial compressive over tensile strength: mostly 4 to 40 (Cai 2010, Rock Mech. Rock Eng. 43:167)."""
+
+LEAST_PRESSURE = 1e3
+"""A confining pressure below it [Pa] is no pressure that rock would notice."""
+
+MOST_INERTIA = 0.2
+"""Fraction of the load at first failure that inertia may be expected to add: see `mass_scaling.py`. Scenes that ship
+have up to 0.11."""
+
+DYNAMIC_RATE = 10.0
+"""Strain rate, times time_scale, from which on tests are dynamic [1/s]: Zhang & Zhao (2014), Rock Mech. Rock Eng.
+47:1411. A wave crosses a specimen of 10 cm once while it strains by 3e-4. It is for scenes without an estimate."""
+
+LEAST_ROWS = 10
+"""Rows of the history up to the first failure that is expected: each then holds a tenth of the load, and the modulus is
+a line through seven of them."""
+
+WHOLE_ANGLE, NEAR = 5.0, 0.15
+"""An angle that in degrees would be a multiple of 5, to as many digits as people type, may be in radians."""
+
+
+def implausible(scene) -> list[str]:
+    """All of it."""
+    rock = [said for path, value, known in _known(scene.rock) if (said := _outside(path, value, known))]
+    return [*rock, *_ratios_said(scene.rock), *_geometry_said(scene), *_loading_said(scene)]
+
+
+def _known(rock) -> list[tuple[str, float, Range]]:
+    """(dotted path, value, range) of every number of a rock that has a range; 0 is a choice."""
+    numbers = _numbers("rock", rock)
+    return [(path, value, RANGES[name]) for path, name, value in numbers if name in RANGES and value != 0.0]
+
+
+def _geometry_said(scene) -> list[str]:
+    """Pressures and angles beside the rock that look like another unit."""
+    said, pressure = [], scene.loading.confinement
+    if 0.0 < pressure < LEAST_PRESSURE:
+        said.append(f"loading.confinement = {pressure:g} Pa looks like MPa: write {pressure:g}e6 or '{pressure:g} MPa'")
+    for body in scene.bodies:
+        for _, part in cuts_of(body.region):
+            angle = part.angle if isinstance(part, Slit) else 0.0
+            degrees = math.degrees(angle)
+            rest = abs(degrees - WHOLE_ANGLE * round(degrees / WHOLE_ANGLE))
+            if abs(angle) <= 2.0 * math.pi and angle != round(angle) and rest < NEAR:
+                said.append(f"slit.angle = {angle:g} degrees looks like radians: write {degrees:.3g}")
+    return said
+
+
+def blamed(error: SceneError, scene) -> SceneError:
+    """A refusal, with what looks like another unit as its likely cause."""
+    causes = [said for path, value, known in _known(scene.rock) if (said := _mistaken(path, value, known))]
+    causes += _geometry_said(scene)
+    return SceneError(f"{error}; likely cause: {'; '.join(causes)}") if causes else error
+
+
+def _numbers(path: str, thing):
+    """(dotted path, field, value) of every number of a dataclass, however deep."""
+    for field in dataclasses.fields(thing):
+        value = getattr(thing, field.name)
+        if dataclasses.is_dataclass(value):
+            yield from _numbers(f"{path}.{field.name}", value)
+        elif type(value) in (int, float):
+            yield f"{path}.{field.name}", field.name, float(value)
+
+
+def _mistaken(path: str, value: float, rock: Range) -> str:
+    """Which unit it may be in; nothing if it is within the range, or in no unit."""
+    if rock.low <= value <= rock.high:
+        return ""
+    for unit, size in rock.mistaken:
+        if rock.low <= value * size <= rock.high:
+            return f"{path} = {_si(value, rock)} looks like {unit}: write {_number(value, size)} or '{value:g} {unit}'"
+    return ""
+
+
+def _number(value: float, size: float) -> str:
+    """17 in GPa as one would write it in SI: 17e9, and of angles and densities the number itself."""
+    power = round(math.log10(size))
+    by_power = power >= 6 and value < 1000.0 and math.isclose(size, 10.0**power)
+    return f"{value:g}e{power}" if by_power else f"{value * size:.4g}"
+
+
+def _si(value: float, rock: Range) -> str:
+    unit = {"GPa": "Pa", "MPa": "Pa"}.get(rock.unit, rock.unit)
+    return f"{value:g} {unit}".strip()
+
+
+def _outside(path: str, value: float, rock: Range) -> str:
+    if rock.low <= value <= rock.high:
+        return ""
+    return _mistaken(path, value, rock) or f"{path} = {_si(value, rock)} is not rock's, {rock.text()} ({rock.source})"
+
+
+def _ratios_said(rock) -> list[str]:
+    """Strengths and moduli against each other. Laws of a scene's own may lack some."""
+    ucs, tensile = (getattr(rock.criterion, name, None) for name in ("ucs", "tensile_strength"))
+    young = getattr(rock.elasticity, "E", None)
+    said = []
+    if ucs and not UCS_RANGE[0] <= ucs <= UCS_RANGE[1]:
+        allowed = f"{UCS_RANGE[0] / 1e6:g} to {UCS_RANGE[1] / 1e6:g} MPa"
+        said.append(f"rock.criterion: a uniaxial strength of {ucs / 1e6:.4g} MPa is not rock's, {allowed} ({STRENGTH})")
+    if ucs and tensile and not BRITTLENESS[0] <= ucs / tensile <= BRITTLENESS[1]:
+        said.append(
+            f"rock.criterion: its compressive over its tensile strength is {ucs / tensile:.3g}; rock's is "
+            f"{BRITTLENESS[0]:g} to {BRITTLENESS[1]:g} (Cai 2010)"
+        )
+    if ucs and young and not MODULUS_RATIO[0] <= young / ucs <= MODULUS_RATIO[1]:
+        said.append(
+            f"rock: E over its uniaxial strength is {young / ucs:.3g}; rock's is {MODULUS_RATIO[0]:g} to "
+            f"{MODULUS_RATIO[1]:g} (Deere & Miller 1966)"
+        )
+    return said
+
+
+def _loading_said(scene) -> list[str]:
+    """Tests that are too fast, and histories that are too coarse."""
+    loading = scene.loading
+    if loading.platens is None or not loading.height > 0.0 or loading.strain_rate == 0.0:
+        return []
+    try:
+        expected = estimate(scene)
+        inertia = expected.error(scene.time_scale)
+        breaks = expected.strain < 0.999 * expected.strain_rate * scene.t_end
+    # not a test that it knows, or laws of a scene's own that lack what it asks for
+    except (ValueError, AttributeError, ArithmeticError):
+        breaks = False
+    if not breaks:
+        rate = abs(loading.strain_rate) * scene.time_scale
+        slower = "lower the platens' speed or loading.time_scale"
+        fast = f"the strain rate of {rate:.3g} 1/s (with time_scale = {scene.time_scale:g}) is that of a dynamic test"
+        return [f"{fast}, above {DYNAMIC_RATE:g} (Zhang & Zhao 2014); {slower}"] if rate > DYNAMIC_RATE else []
+    said = []
+    if inertia > MOST_INERTIA:
+        said.append(
+            f"the strain rate of {expected.strain_rate:.3g} 1/s with time_scale = {scene.time_scale:g} is no "
+            f"quasi-static test: inertia is expected to add up to {100.0 * inertia:.3g} % to the load at first failure "
+            f"(above {100.0 * MOST_INERTIA:g} %); lower the platens' speed or loading.time_scale"
+        )
+    row = expected.strain_rate * scene.row_steps * scene.dt
+    if row * LEAST_ROWS > expected.strain:
+        said.append(
+            f"a history row holds a strain of {row:.3g}, and the first failure is expected at {expected.strain:.3g}: "
+            f"fewer than {LEAST_ROWS} rows before it show no peak; raise schedule.rows to "
+            f"{math.ceil(scene.steps * scene.dt * expected.strain_rate * LEAST_ROWS / expected.strain)} or more"
+        )
+    return said
