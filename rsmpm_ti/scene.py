@@ -7,7 +7,7 @@ from dataclasses import replace
 from pathlib import Path
 
 from rsmpm_ti.errors import SceneError, UnstableRun, shown
-from rsmpm_ti.spec.loader import available, find, keywords_of, load_scene, scene_name
+from rsmpm_ti.spec.loader import about, available, find, load_scene, scene_name
 from rsmpm_ti.spec.mass_scaling import estimate
 from rsmpm_ti.spec.scene import Scene
 from rsmpm_ti.spec.scene_checks import memory_of_nodes, memory_of_particles
@@ -109,14 +109,16 @@ def expectation(scene: Scene) -> tuple[tuple[str, str], ...]:
 
 
 def list_scenes() -> str:
+    """Two lines for each scene: what it is, and its keywords with defaults, as --set takes them."""
     lines = []
     for name, path in available().items():
         try:
-            pairs = keywords_of(path).items()
-            text = ", ".join(f"{k}={v:g}" if isinstance(v, float) else f"{k}={shown(v)}" for k, v in pairs)
+            what, keywords = about(path)
         except SceneError as error:  # one bad file does not hide the others
-            text = "cannot be listed: " + " ".join(str(error).split())
-        lines.append(f"{name:<10} {text}")
+            what, keywords = "cannot be listed: " + " ".join(str(error).split()), {}
+        lines.append(f"{name:<15} {what}")
+        if keywords:
+            lines.append(f"{'':<15} {'  '.join(f'{key}={value}' for key, value in keywords.items())}")
     return "\n".join(lines)
 
 

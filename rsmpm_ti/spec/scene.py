@@ -3,7 +3,9 @@
 (`rsmpm_ti.scene` is the command line: it runs as `__main__`, and a dataclass defined there would exist twice.)
 """
 
+import contextlib
 import math
+from contextvars import ContextVar
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import Annotated, Literal
@@ -200,7 +202,8 @@ class Schedule:
 
     def __post_init__(self):
         if (self.strain_end is None) == (self.t_end is None):
-            raise SceneError("schedule: give exactly one of strain_end (platen strain) and t_end (seconds)")
+            needed = "give exactly one of strain_end (platen strain) and t_end (seconds); set the other to none"
+            raise SceneError(f"schedule: {needed}")
         if self.strain_end is not None and not 0.0 < abs(self.strain_end) < 0.5:
             raise refuse("schedule.strain_end", self.strain_end, "a strain of size in (0, 0.5)")
 
@@ -222,6 +225,19 @@ class Output:
     stress_limit: Annotated[Pressure, Positive] | None = None
 
 
+_UNCHECKED = ContextVar("_UNCHECKED", default=False)
+
+
+@contextlib.contextmanager
+def unchecked():
+    """Within it the parts of a scene are not held to each other: whoever changes more of them builds it again after."""
+    token = _UNCHECKED.set(True)
+    try:
+        yield
+    finally:
+        _UNCHECKED.reset(token)
+
+
 @checked("scene")
 @dataclass(frozen=True, kw_only=True)
 class Scene:
@@ -239,6 +255,8 @@ class Scene:
     output: Output = field(default_factory=Output)
 
     def __post_init__(self):
+        if _UNCHECKED.get():
+            return
         if len(self.title) > 200 or not self.title.isprintable():
             raise refuse("scene.title", self.title, "at most 200 printable characters in one line")
         if self.order == "usl" and isinstance(self.shape, Linear):
