@@ -56,6 +56,10 @@ class Sized(SimpleNamespace):
     def __init__(self, columns: SimpleNamespace):
         super().__init__(**vars(columns))
 
+    @property
+    def true_time(self) -> np.ndarray:
+        return self.time
+
     def __len__(self) -> int:
         return len(self.time)
 

@@ -71,7 +71,9 @@ def initiations(events, bands: list[np.ndarray], tips: tuple[FlawTip, ...], hist
     entries = []
     for k, tip in enumerate(tips):
         entry = {"flaw": int(tip.name[:-1]), "tip": tip.name, "tip_m": tip.position.tolist()}
-        entry |= dict.fromkeys(("stress_Pa", "strain", "time_s", "position_m", "angle_deg", "mode", "crack"))
+        entry |= dict.fromkeys(
+            ("stress_Pa", "strain", "time_s", "true_time_s", "position_m", "angle_deg", "mode", "crack")
+        )
         mine = np.flatnonzero((tip_of == k) & (band_of >= 0))
         if len(mine):
             e = mine[0]
@@ -83,6 +85,7 @@ def initiations(events, bands: list[np.ndarray], tips: tuple[FlawTip, ...], hist
                 "stress_Pa": stress if np.isfinite(stress) else None,
                 "strain": strain if np.isfinite(strain) else None,
                 "time_s": float(events.time[e]),
+                "true_time_s": float(events.true_time[e]),
                 "position_m": events.x[e].tolist(),
                 "angle_deg": angle if np.isfinite(angle) else None,
                 "mode": MODE_NAMES[events.mode[e]],

@@ -28,6 +28,7 @@ class Fracture:
     b: BValue | None
     rayleigh_speed: float  # of the rock as run, mass scaling included [m/s]
     dim: int
+    time_scale: float = 1.0
     warning: str = ""  # numerical fracture, see `numerical_fracture.py`
 
     def numbers(self) -> dict:
@@ -73,5 +74,6 @@ def measure_fracture(scene: Scene, history: np.ndarray, events: EventTable, snap
         b=b_value(acoustic.magnitude),
         rayleigh_speed=rayleigh_speed(shear_speed, scene.wave_speed),
         dim=scene.dim,
+        time_scale=scene.time_scale,
         warning=parting_warning(scene, snapshot),
     )

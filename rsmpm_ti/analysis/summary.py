@@ -39,6 +39,7 @@ def summarise(scene: Scene, history: np.ndarray, events: EventTable, energy_star
         "first_failure_stress_Pa": None,
         "first_failure_strain": None,
         "first_failure_time_s": None,
+        "first_failure_true_time_s": None,
         "first_failure_mode": None,
         "first_failure_position_m": None,
         "initiation_angles_deg": [],
@@ -49,7 +50,7 @@ def summarise(scene: Scene, history: np.ndarray, events: EventTable, energy_star
         "failed_shear": int(np.sum(events.mode != TENSION)),
     }
     if len(events):
-        out["first_failure_time_s"] = first
+        out["first_failure_time_s"], out["first_failure_true_time_s"] = first, float(events.true_time[0])
         out["first_failure_mode"] = MODE_NAMES[events.mode[0]]
         out["first_failure_position_m"] = events.x[0].tolist()
     for name, time in (("onset", onset), ("first_failure", first)):

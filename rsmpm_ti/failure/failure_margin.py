@@ -59,10 +59,10 @@ def margins(sim) -> dict[str, np.ndarray]:
     """`margin` to failure, what `governs` it (0 nothing, 1 tension, 2 shear), `damage` and `failure_mode`, [n] each, as
     particles lie.
 
-    1, 0, 0 and 0 everywhere in rock that does not break. See `Snapshot` for what they mean in rock that has failed.
+    NaN, 0, 0 and 0 everywhere in rock that does not break. See `Snapshot` for what they mean in rock that has failed.
     """
     n = sim.particles.count
-    margin, governs, damage = np.ones(n), np.zeros(n, dtype=np.int32), np.zeros(n)
+    margin, governs, damage = np.full(n, np.nan), np.zeros(n, dtype=np.int32), np.zeros(n)
     failed = np.zeros(n, dtype=np.int32)
     if sim.particles.breaks:
         if sim.is_nonlocal:

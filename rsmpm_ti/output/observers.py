@@ -4,6 +4,7 @@ import math
 
 from rsmpm_ti.output.folder import forget
 from rsmpm_ti.output.writer import Writer
+from rsmpm_ti.records.snapshot import INSTANT
 from rsmpm_ti.solver.observer import Observer
 from rsmpm_ti.solver.view import View
 
@@ -62,7 +63,8 @@ class ParticleFiles(Observer):
 
     def see(self, view: View) -> None:
         self._entries.append((view.time, f"particles_{len(self._entries):04d}.vtu"))
-        self._writer.vtu(list(self._entries), view.readout)
+        instant = {column.name: float(column.value(view)) for column in INSTANT.columns if column.value is not None}
+        self._writer.vtu(list(self._entries), view.readout, instant)
 
     def state(self) -> dict:
         return {"entries": self._entries}

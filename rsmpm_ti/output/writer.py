@@ -60,9 +60,10 @@ class Writer:
     def frame(self, number: int, readout: Readout, history: np.ndarray) -> None:
         self._order("frame", number, readout, history)
 
-    def vtu(self, entries: list[tuple[float, str]], readout: Readout) -> None:
-        """entries: (time [s], file name) of every VTU so far, the last of which is to be written."""
-        self._order("vtu", entries, readout)
+    def vtu(self, entries: list[tuple[float, str]], readout: Readout, instant: dict[str, float]) -> None:
+        """entries: (time [s], file name) of every VTU so far, the last of which is to be written; instant: its field
+        data."""
+        self._order("vtu", entries, readout, instant)
 
     def checkpoint(self, arrays: dict[str, np.ndarray]) -> None:
         self._order("checkpoint", arrays)

@@ -81,8 +81,8 @@ def cracking(snapshot: Snapshot) -> np.ndarray:
 
 
 def signed_load(snapshot: Snapshot) -> np.ndarray:
-    """1 - margin, [n]; negative where shear governs."""
-    return _side(snapshot) * (1.0 - snapshot.margin)
+    """1 - margin, [n]; negative where shear governs; 0 in rock that does not break."""
+    return _side(snapshot) * np.nan_to_num(1.0 - snapshot.margin)
 
 
 def _side(snapshot: Snapshot) -> np.ndarray:

@@ -32,6 +32,7 @@ SUMMARY = Table(
         _key("first_failure_stress_Pa", "Pa", "nominal stress at first failure, extrapolated from the rows before it"),
         _key("first_failure_strain", "1", "nominal strain then"),
         _key("first_failure_time_s", "s", "time of first failure"),
+        _key("first_failure_true_time_s", "s", "the same without mass scaling: over time_scale"),
         _key("first_failure_mode", "", "tension or shear"),
         _key("first_failure_position_m", "m", "where it was, a list of coordinates"),
         _key(
@@ -67,6 +68,7 @@ SUMMARY = Table(
         _key("initiation[].stress_Pa", "Pa", "nominal stress then; null where nothing grew, as all that follows"),
         _key("initiation[].strain", "1", "nominal strain then"),
         _key("initiation[].time_s", "s", "its time"),
+        _key("initiation[].true_time_s", "s", "the same without mass scaling: over time_scale"),
         _key("initiation[].position_m", "m", "where it was"),
         _key("initiation[].angle_deg", "degree", "between the flaw's continuation and the crack"),
         _key("initiation[].mode", "", "tension or shear"),

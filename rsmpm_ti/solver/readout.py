@@ -65,7 +65,7 @@ class Readout:
             margin=column("margin"),
             governs=column("governs", np.int8),
             damage=column("damage"),
-            aperture=column("aperture") if "aperture" in fields else np.zeros(n),
+            aperture=column("aperture") if "aperture" in fields else np.full(n, np.nan),
             crack_angle=crack_angle,
             history=history,
         )
@@ -126,4 +126,4 @@ def read_events(sim: Simulation) -> EventTable:
     order = np.lexsort((columns["id"], columns["time"]))
     columns = {name: column[order] for name, column in columns.items()}
     onset = float(sim.events.onset[None])
-    return EventTable(**columns, onset=onset if onset < NEVER else np.inf)
+    return EventTable(**columns, time_scale=sim.scene.time_scale, onset=onset if onset < NEVER else np.inf)

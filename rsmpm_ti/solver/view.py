@@ -1,5 +1,6 @@
 """One look at a run between two steps: what history columns are made of and what observers see."""
 
+import math
 from functools import cached_property
 from pathlib import Path
 
@@ -27,6 +28,26 @@ class View:
         self.time, self.strain, self.step, self.dt, self.fraction = (
             clock.time, clock.strain, clock.step, clock.dt, clock.fraction
         )  # fmt: skip
+
+    @property
+    def true_time(self) -> float:
+        """Time without mass scaling [s]: that of waves and running cracks; see docs/conventions.md."""
+        return self.time / self.scene.time_scale
+
+    @cached_property
+    def lateral_strains(self) -> tuple[float, ...]:
+        """Across the load, one for each axis, compression positive; NaN where nothing is measured."""
+        return self._history.extensometer.read()
+
+    @property
+    def lateral_strain(self) -> float:
+        """The mean of them [1]."""
+        return float(np.mean(self.lateral_strains))
+
+    @property
+    def volumetric_strain(self) -> float:
+        """Axial and lateral strains, added [1], compression positive; NaN in plane stress, where one is not known."""
+        return math.nan if self.scene.rock.elasticity.plane_stress else self.strain + sum(self.lateral_strains)
 
     @property
     def scene(self) -> Scene:
