@@ -29,7 +29,7 @@ thickness. In a CSV an empty cell means *not defined*, and so does `null` in JSO
 | `frames/cracks_0000.png`, ... | what has failed, and how |
 | `frames/margin_0000.png`, ... | how near the rock is to failure; with `--margin` |
 | `NAME.mp4` | cracks on the left, stress on the right, of all frames |
-| `summary.png` | the last state with its cracks, and the load curve with acoustic events |
+| `summary.png` | the load curve with acoustic events; the cracks at the largest load and at the end |
 """
 
 TAIL = """\

@@ -4,7 +4,7 @@ import math
 
 from rsmpm_ti.output.folder import forget
 from rsmpm_ti.output.writer import Writer
-from rsmpm_ti.records.snapshot import INSTANT
+from rsmpm_ti.records.snapshot import INSTANT, Pattern
 from rsmpm_ti.solver.observer import Observer
 from rsmpm_ti.solver.view import View
 
@@ -51,6 +51,32 @@ class Frames(Observer):
         self._failed, self._count = state["failed"], state["count"]
         forget(self._writer.out, "frames/*_[0-9]*.png", keep=self._count)
         self._writer.refilm(self._count)
+
+
+class LargestLoad(Observer):
+    """Keeps the crack pattern at the history row of the largest load, for summary.png; None while nothing has cracked.
+
+    A collapse leaves rubble: the pattern that a test is known by is the one at its peak.
+    """
+
+    every = 0.0  # it looks at every row
+
+    def __init__(self):
+        self.pattern: Pattern | None = None
+        self._largest = 0.0
+
+    def see(self, view: View) -> None:
+        load = abs(view.load.stress)
+        if load > self._largest:  # not so of NaN
+            self._largest, self.pattern = load, view.pattern if view.begun else None
+
+    def state(self) -> dict:
+        return {"largest": self._largest, **({} if self.pattern is None else vars(self.pattern))}
+
+    def resume(self, state: dict) -> None:
+        self._largest = state["largest"]
+        kept = {name: value for name, value in state.items() if name != "largest"}
+        self.pattern = Pattern(**kept) if kept else None
 
 
 class ParticleFiles(Observer):

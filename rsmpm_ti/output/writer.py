@@ -20,7 +20,6 @@ import numpy as np
 import rsmpm_ti
 from rsmpm_ti.errors import SceneError
 from rsmpm_ti.output.pictures import Commission
-from rsmpm_ti.records.snapshot import Snapshot
 from rsmpm_ti.solver.readout import Readout
 
 WAITING_BYTES = 512 * 2**20
@@ -68,9 +67,9 @@ class Writer:
     def checkpoint(self, arrays: dict[str, np.ndarray]) -> None:
         self._order("checkpoint", arrays)
 
-    def close(self, snapshot: Snapshot, history: np.ndarray, paths: list[np.ndarray], acoustic: np.ndarray) -> None:
+    def close(self, *last) -> None:
         """Wait for everything, the movie and summary.png last; arguments as of `Gallery.close`."""
-        self._order("close", snapshot, history, paths, acoustic)
+        self._order("close", *last)
         self._settle(0)
         self._end()
 

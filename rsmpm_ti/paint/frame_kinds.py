@@ -31,8 +31,8 @@ def stress_look(limit: float, title: str | None, convention: str, inset: dict[st
     """Largest principal stress up to a limit [Pa] of either sign."""
     palette = stress_palette(limit)
     wording = Wording(
-        title=title or "Maximum principal stress $\\sigma_1$",
-        bar=f"$\\sigma_1$ [MPa]   ({convention})",
+        title=title or "Maximum principal stress $\\sigma_1$, total",
+        bar=f"total $\\sigma_1$ [MPa]   ({convention})",
         legend=(*_failed(palette), ("void", palette.void)),
         **inset,
     )

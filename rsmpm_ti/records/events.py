@@ -1,6 +1,6 @@
 """The failure events of a run."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -39,6 +39,13 @@ class EventTable:
     def true_time(self) -> np.ndarray:
         """Times in the rock of true density, loaded so many times faster [s]; see docs/conventions.md."""
         return self.time / self.time_scale
+
+    def until(self, time: float) -> "EventTable":
+        """The events up to a time [s], that time included."""
+        n = int(np.searchsorted(self.time, time, side="right"))
+        columns = ("time", "x", "mode", "sigma_1", "sigma_3", "released", "id")
+        cut = {name: getattr(self, name)[:n] for name in columns}
+        return replace(self, **cut, normal=None if self.normal is None else self.normal[:n])
 
     def __len__(self) -> int:
         return len(self.time)

@@ -45,6 +45,20 @@ class Snapshot:
     history: dict[str, np.ndarray] = field(default_factory=dict)  # what the law after failure remembers, by name
 
 
+@dataclass(frozen=True)
+class Pattern:
+    """What of a Snapshot a picture of cracks needs, by the same names: it is copied at every new largest load."""
+
+    time: float
+    id: np.ndarray
+    x: np.ndarray
+    displacement: np.ndarray
+    volume: np.ndarray
+    failure_mode: np.ndarray
+    governs: np.ndarray
+    damage: np.ndarray
+
+
 PARTICLES = Table(
     file="particles_0000.vtu, particles_0001.vtu, ...",
     about=(

@@ -2,7 +2,7 @@
 
 import time
 
-from rsmpm_ti.analysis.fracture import Fracture, measure_fracture
+from rsmpm_ti.analysis.fracture import Fracture, crack_lines, measure_fracture
 from rsmpm_ti.analysis.summary import summarise
 from rsmpm_ti.errors import ObserverError, SceneError
 from rsmpm_ti.output.files import write_events, write_history
@@ -56,7 +56,9 @@ def _writes(run, view, fracture: Fracture, failure: Exception | None) -> list:
     if failure is None or of_user:  # else the last one is of a sound state, or nothing more can be written
         writes.append(checkpoint)
     if of_user or not isinstance(failure, SceneError):
-        last = view.snapshot, view.history, fracture.paths, fracture.acoustic.time
+        peak = run.largest.pattern
+        lines = [] if peak is None else crack_lines(run.scene, view.events, peak)
+        last = view.snapshot, view.history, fracture.lines, fracture.acoustic.time, peak, lines
         writes.append(lambda: timed(run.writer.close, *last))
     return writes
 

@@ -115,10 +115,10 @@ class Run:
         own: list = []
         last: list = []
         if self.writer is not None:
-            from rsmpm_ti.output.observers import Frames, ParticleFiles
+            from rsmpm_ti.output.observers import Frames, LargestLoad, ParticleFiles
 
-            wanted = self.scene.output
-            own.append(Frames(self.writer, wanted.frames, self.sim.particles.count))
+            wanted, self.largest = self.scene.output, LargestLoad()
+            own += [Frames(self.writer, wanted.frames, self.sim.particles.count), self.largest]
             own += [ParticleFiles(self.writer, wanted.vtu)] if wanted.vtu else []
             last.append(Checkpoint(self.settings.checkpoint_every, self.checkpoint))
         users = [Watch(observer) for observer in self.settings.observers]

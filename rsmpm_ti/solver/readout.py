@@ -8,11 +8,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from rsmpm_ti.failure.failure_margin import margins
+from rsmpm_ti.failure.failure_margin import damages, margins
 from rsmpm_ti.fields.records import NEVER
 from rsmpm_ti.fields.state import Simulation
 from rsmpm_ti.records.events import EventTable
-from rsmpm_ti.records.snapshot import Snapshot
+from rsmpm_ti.records.snapshot import Pattern, Snapshot
 
 
 @dataclass(frozen=True)
@@ -97,6 +97,25 @@ def read_out(sim: Simulation, time: float) -> Readout:
         failed=(events.id.to_numpy()[:count], events.time.to_numpy()[:count]),
         history=history,
         oriented=particles.breaks and sim.rock.after_failure.oriented,
+    )
+
+
+def read_pattern(sim: Simulation, time: float) -> Pattern:
+    """Copy what a picture of cracks needs, in the order of ids, without what was dropped."""
+    particles, failed = sim.particles, damages(sim)
+    ids, volume = particles.id.to_numpy(), particles.volume.to_numpy()
+    order = np.argsort(ids, kind="stable")
+    order = order[volume[order] != 0.0]
+    u = particles.u.to_numpy()[order].astype(np.float64)
+    return Pattern(
+        time=time,
+        id=ids[order],
+        x=particles.reference.to_numpy()[order] + u,
+        displacement=u,
+        volume=(volume * particles.J.to_numpy())[order].astype(np.float64),
+        failure_mode=failed["failure_mode"][order].astype(np.int8),
+        governs=failed["governs"][order].astype(np.int8),
+        damage=failed["damage"][order],
     )
 
 

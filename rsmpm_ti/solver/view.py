@@ -6,11 +6,12 @@ from pathlib import Path
 
 import numpy as np
 
+from rsmpm_ti.fields.records import NEVER
 from rsmpm_ti.fields.state import Simulation
 from rsmpm_ti.mpm.clock import Clock
 from rsmpm_ti.records.events import EventTable
-from rsmpm_ti.records.snapshot import Snapshot
-from rsmpm_ti.solver.readout import Readout, read_events, read_out
+from rsmpm_ti.records.snapshot import Pattern, Snapshot
+from rsmpm_ti.solver.readout import Readout, read_events, read_out, read_pattern
 from rsmpm_ti.solver.survey import Survey
 from rsmpm_ti.spec.load_cell import Load
 from rsmpm_ti.spec.scene import Scene
@@ -74,6 +75,16 @@ class View:
     def snapshot(self) -> Snapshot:
         """All particles, as NumPy arrays in the order of their ids."""
         return self.readout.snapshot()
+
+    @cached_property
+    def pattern(self) -> Pattern:
+        """What of the snapshot a picture of cracks needs; much cheaper."""
+        return read_pattern(self.sim, self.time)
+
+    @property
+    def begun(self) -> bool:
+        """Whether a particle has begun to lose strength."""
+        return self.survey.failed_tension + self.survey.failed_shear > 0 or self.sim.events.onset[None] < NEVER
 
     @cached_property
     def events(self) -> EventTable:

@@ -84,7 +84,7 @@ def test_summary_and_tables_say_the_same(tmp_path):
     assert energy == pytest.approx(events.released.sum(), rel=1e-9)
     stress = [float(row["nominal_stress_Pa"]) for row in found["acoustic"]]
     assert stress == sorted(stress) and stress[0] == pytest.approx(1e6)
-    assert len(fracture.paths) == 2
+    assert len(fracture.lines) == 2
 
 
 def test_columns_carry_their_units(tmp_path):
@@ -135,7 +135,7 @@ def test_solid_has_cracks_without_paths(tmp_path):
     (row,) = tables(tmp_path)["cracks"]
     assert row["length_m"] == row["aperture_mean_m"] == row["leaving_angle_deg"] == ""
     assert float(row["initiation_z_m"]) in (0.0, SPACING) and float(row["growth_m"]) > 3e-3
-    assert fracture.paths == [] and fracture.numbers()["crack_length_m"] is None
+    assert fracture.lines == [] and fracture.numbers()["crack_length_m"] is None
 
 
 def test_without_platens_nothing_has_a_stress(tmp_path):
