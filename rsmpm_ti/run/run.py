@@ -37,10 +37,11 @@ def simulate(
 
     precision: 'f64' or 'f32'; arch: 'cpu' or 'cuda'; threads: CPU threads, all by default; deterministic: the same
     bits whatever the number of threads, on one kind of machine; resume: go on from the checkpoint in `out`, from the
-    start where there is none; checkpoint_every: wall time between checkpoints [s]; progress: called after each history
-    row; columns: more columns of the history (`Column`); observers: more observers (`Observer`), whose states a
-    checkpoint keeps, to be given again, in the same order, to a run that resumes. Ctrl-C and SIGTERM stop after the
-    step and still write what there is.
+    start where there is none, of a run that was stopped or done: its end, rows and output may be others now, nothing
+    else; checkpoint_every: wall time between checkpoints [s]; progress: called after each history row; columns: more
+    columns of the history (`Column`); observers: more observers (`Observer`), whose states a checkpoint keeps, to be
+    given again, in the same order, to a run that resumes. Ctrl-C and SIGTERM stop after the step and still write what
+    there is.
     Raises SceneError for input that cannot be run, before anything compiles, and when files cannot be written any
     more, and after writing everything up to there UnstableRun, or ObserverError where a column or observer raised.
     """
@@ -55,9 +56,11 @@ def simulate(
     if out is None:
         return Run(scene, seeds, None, settings).go()
     if resume:
-        from rsmpm_ti.run.checkpoint import read
+        from rsmpm_ti.run.checkpoint import check_end, read
 
         kept = read(Path(out), settings.identity(scene))
+        if kept is not None:
+            check_end(kept, scene)
     return Run(scene, seeds, prepare(scene, out, keep=kept is not None), settings, kept).go()
 
 
@@ -90,7 +93,7 @@ class Run:
             raise
 
     def _set_up(self, seeds, kept) -> None:
-        from rsmpm_ti.run.checkpoint import restore, restore_observers
+        from rsmpm_ti.run.checkpoint import changed, restore, restore_observers
         from rsmpm_ti.solver.advance import Drive
         from rsmpm_ti.solver.history import History
 
@@ -104,7 +107,9 @@ class Run:
         self.interrupted = threading.Event()
         if kept is not None:
             progress = restore(kept, self.drive, self.history)
-            restore_observers(self.watches, progress["observers"], kept)
+            another = changed(kept, self.settings.identity(self.scene))
+            fraction = self.clock.fraction if another else None
+            restore_observers(self.watches, progress["observers"], kept, fraction)
             self.wall_before = progress["wall_s"]
 
     def _observers(self) -> list:
@@ -118,8 +123,11 @@ class Run:
             from rsmpm_ti.output.observers import Frames, LargestLoad, ParticleFiles
 
             wanted, self.largest = self.scene.output, LargestLoad()
-            own += [Frames(self.writer, wanted.frames, self.sim.particles.count), self.largest]
-            own += [ParticleFiles(self.writer, wanted.vtu)] if wanted.vtu else []
+            self.files = (
+                Frames(self.writer, wanted.frames, self.sim.particles.count),
+                ParticleFiles(self.writer, wanted.vtu),
+            )
+            own += [self.largest, *self.files]
             last.append(Checkpoint(self.settings.checkpoint_every, self.checkpoint))
         users = [Watch(observer) for observer in self.settings.observers]
         return [*(Watch(o, own=True) for o in own), *users, *(Watch(o, own=True) for o in last)]
@@ -162,6 +170,9 @@ class Run:
             self.drive.advance(1)
         elif not self.clock.done:
             self._row()
+        elif self.writer is not None:
+            for files in self.files:
+                files.catch_up(self.view())
         ti.sync()
         self.started, self.painting_s, self.steps_before = time.perf_counter(), 0.0, self.clock.step
 
