@@ -104,7 +104,7 @@ def _measure(events, band, graph, tips, spacing, time_scale) -> Crack:
             width=particles * spacing**2 / whole,
         )  # fmt: skip
     near = int(nearest_tip(x[:1], tips)[0])
-    angle = first_angle(x, mode, tips[near].outward) if near >= 0 else np.nan
+    angle = first_angle(events, band, tips[near]) if near >= 0 else np.nan
     return Crack(
         events=band,
         particles=particles,

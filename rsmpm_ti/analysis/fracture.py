@@ -43,6 +43,8 @@ class Fracture:
             "acoustic_events": len(self.acoustic),
             "b_value": self.b.b if self.b else None,
             "b_value_error": self.b.error if self.b else None,
+            # of one flaw; of more the list below tells them apart
+            "initiation_angles_deg": [tip["angle_deg"] for tip in self.initiation] if len(self.initiation) == 2 else [],
             "initiation": self.initiation,
             "numerical_fracture": self.warning or None,
         }

@@ -42,7 +42,6 @@ def summarise(scene: Scene, history: np.ndarray, events: EventTable, energy_star
         "first_failure_true_time_s": None,
         "first_failure_mode": None,
         "first_failure_position_m": None,
-        "initiation_angles_deg": [],
         "first_crack_angles_deg": [],
         "wing_reach_m": [],
         "half_turn_mismatch_m": None,
@@ -119,7 +118,7 @@ def _crack_numbers(scene: Scene, events: EventTable) -> dict:
     slit, body = slits[0]
     spacing = scene.domain.dx / body.seeding.particles_per_axis
     pair = wings(events.x[events.mode == TENSION], slit, spacing)
-    out: dict = {"initiation_angles_deg": [None if w is None or np.isnan(w.angle) else w.angle for w in pair]}
+    out: dict = {}
     if events.crack_angle is not None:
         tension = events.mode == TENSION
         angles = first_crack_angles(events.x[tension].astype(float), events.crack_angle[tension].astype(float), slit)

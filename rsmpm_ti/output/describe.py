@@ -20,7 +20,8 @@ HEAD = """\
 A run writes into one folder, `renders/NAME` unless `--out` says otherwise. Every file appears under its name only when
 it is complete. SI units throughout; angles in degrees. Stresses of the load curve are compression positive, as tests
 report them; stresses of particles and failures are tension positive. In 2D energies, masses and forces are per metre of
-thickness. In a CSV an empty cell means *not defined*, and so does `null` in JSON; numbers have ten digits. A name with
+thickness. In a CSV an empty cell means *not defined*, and so does `null` in JSON and `NaN` in a VTU file: a number that
+is not finite is never written otherwise, and no 0 in place of it. Numbers in a CSV have ten digits. A name with
 `{axis}` stands for one column for each axis: x, y and in 3D z.
 
 | file | what it is |

@@ -101,7 +101,8 @@ CRACKS = Table(
             value=each(lambda row: row.crack.origin.tip),
         ),
         Column(
-            name="leaving_angle_deg", unit="degree", about="between the flaw's continuation and the crack",
+            name="leaving_angle_deg", unit="degree", about="between the flaw's continuation and the crack, by the rule "
+            "of `initiation[].angle_deg` of summary.json",
             value=each(lambda row: row.crack.origin.angle),
         ),
         Column(

@@ -8,7 +8,7 @@ from rsmpm_ti.errors import ObserverError, SceneError
 from rsmpm_ti.output.files import write_events, write_history
 from rsmpm_ti.output.folder import write_all
 from rsmpm_ti.output.fracture_tables import write_fracture
-from rsmpm_ti.records.files import write_json
+from rsmpm_ti.records.files import plain, write_json
 from rsmpm_ti.records.result import Result
 
 
@@ -19,7 +19,7 @@ def finish(run, stopped: str, failure: Exception | None) -> Result:
     summary = {}
 
     def sum_up() -> None:  # last, since it counts the time of everything else
-        summary.update(numbers_of(run, view, fracture, speed, stopped))
+        summary.update(plain(numbers_of(run, view, fracture, speed, stopped)))  # the same in Python as in the file
 
     if run.out is None:
         sum_up()
