@@ -58,9 +58,9 @@ def first_angle(events, rows: np.ndarray, tip: FlawTip) -> float:
     rows: of the events (an EventTable), those of one band from the crack's first on, in order of time. A crack in rock
     whose cracks have a direction has the median of the directions of its first failures in tension within the tip's
     reach, FIRST at most: their places say little, since a band of half-broken rock fails here and there. Of other rock,
-    and of a crack in shear, it is the line through the places of failure, as `wings.leaving_angle`: of those of the
+    and of a crack in shear, it is the line through the places of failure (`wing_cracks.leaving_angle`): of those of the
     first one's mode, and only until the crack is twice FIT_LENGTH away. What crushes at the tip later is no direction
-    in which it left. (`wings.wings` fits all failures in tension of the whole run.)
+    in which it left.
     """
     x, mode = events.x[rows].astype(float), events.mode[rows]
     normal = events.crack_angle

@@ -53,7 +53,7 @@ def summary_picture(
     if peak is not None and peak.time < snapshot.time:
         patterns.insert(0, (peak, peak_lines, "Cracks at the largest load"))
     elif peak is not None:
-        patterns = [(snapshot, lines, "Cracks at the end, the largest load")]
+        patterns = [(snapshot, lines, "Cracks at the end (largest load)")]
     figure = Figure(figsize=(WIDTHS[len(patterns) - 1] / DPI, 900 / DPI), dpi=DPI, facecolor="white")
     figure.set_layout_engine("constrained", w_pad=0.15, h_pad=0.15)
     FigureCanvasAgg(figure)
@@ -89,7 +89,7 @@ def _curve(axes, history: np.ndarray, wording: Wording, acoustic: np.ndarray) ->
         axes.set_xlabel(wording.inset_x, fontsize=14)
         axes.set_ylabel(f"{wording.inset_y}   (compression positive)", fontsize=14)
         axes.set_xlim(left=min(0.0, float(np.nanmin(across))))
-        axes.set_ylim(bottom=min(0.0, float(np.nanmin(load)) * MEGA))
+        axes.set_ylim(bottom=min(0.0, 1.05 * float(np.nanmin(load)) * MEGA))
         counts = axes.twinx()
         counts.tick_params(labelsize=12)
     counts.set_ylabel("failed particles, acoustic events" if len(acoustic) else "failed particles", fontsize=14)
