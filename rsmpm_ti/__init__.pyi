@@ -41,6 +41,7 @@ from .solver.view import View as View
 from .spec.boundaries import Fixed as Fixed
 from .spec.boundaries import Platen as Platen
 from .spec.boundaries import Wall as Wall
+from .spec.domain import Domain as Domain
 from .spec.load_cell import Gauge as Gauge
 from .spec.load_cell import LoadCell as LoadCell
 from .spec.loader import load_scene as load_scene
@@ -55,7 +56,6 @@ from .spec.regions import Disc as Disc
 from .spec.regions import Slit as Slit
 from .spec.regions import Union as Union
 from .spec.scene import Body as Body
-from .spec.scene import Domain as Domain
 from .spec.scene import Loading as Loading
 from .spec.scene import Output as Output
 from .spec.scene import Scene as Scene

@@ -2,18 +2,18 @@
 
 import argparse
 import math
+import os
 import sys
 import warnings
 from dataclasses import replace
 from pathlib import Path
 
 from rsmpm_ti.errors import RockWarning, SceneError, UnstableRun, shown
-from rsmpm_ti.spec.loader import available, find, keywords_of, load_scene, scene_name
+from rsmpm_ti.spec.loader import about, available, find, load_scene, scene_name
 from rsmpm_ti.spec.mass_scaling import estimate
 from rsmpm_ti.spec.review.placement import area_errors
 from rsmpm_ti.spec.review.sentences import review
 from rsmpm_ti.spec.scene import Scene
-from rsmpm_ti.spec.scene_checks import memory_of_nodes, memory_of_particles
 from rsmpm_ti.spec.scene_json import schema
 from rsmpm_ti.spec.seeding import Seeds
 
@@ -25,9 +25,6 @@ STATUSES = (
 
 QUICK_FRAMES, QUICK_ROWS = 10, 250
 """Frames and history rows of a --quick run: painting and looking would otherwise take longer than solving."""
-
-PARTICLE_STEPS_PER_S = 13e6
-"""What `--check` assumes for its estimate: quadratic B-splines on two cores beside the painter; see docs/speed.md."""
 
 
 def parser() -> argparse.ArgumentParser:
@@ -88,24 +85,31 @@ def build(options: argparse.Namespace) -> Scene:
     return scene.elastic() if options.elastic else scene
 
 
-def describe(scene: Scene) -> str:
-    """What would be run, as `--check` prints it."""
+def describe(scene: Scene, threads: int | None = None) -> str:
+    """What would be run, as `--check` prints it; threads: all by default."""
+    from rsmpm_ti.run.forecast import memory, solving_time
+
     seeds = scene.particles()
     count = sum(len(body.x) for body in seeds)
     nodes = math.prod(scene.domain.node_counts)
-    memory = (memory_of_particles(scene, count) + memory_of_nodes(scene)) / 1e6
-    seconds = count * scene.steps / PARTICLE_STEPS_PER_S
+    solver, painter = (size / 1e6 for size in memory(scene, count))
+    cores = threads or os.cpu_count() or 1
+    seconds = solving_time(scene, count, cores)
     rows = (
         ("scene", scene.title),
         ("particles", f"{count}"),
         *area(scene, seeds),
         ("grid nodes", f"{nodes} ({scene.domain.grid}), dx = {1e3 * scene.domain.dx:g} mm"),
-        ("memory", f"about {memory:.0f} MB of fields"),
+        ("memory", f"about {solver:.0f} MB to solve, and {painter:.0f} MB to paint and write"),
         ("method", f"{scene.order}, {type(scene.shape).__name__}, {type(scene.transfer).__name__}"),
         ("dt", f"{scene.dt:.4g} s (mass scaling by time_scale = {scene.time_scale:g})"),
         *expectation(scene),
         ("steps", f"{scene.steps} to t = {1e3 * scene.t_end:.4g} ms"),
-        ("estimate", f"about {seconds:.0f} s of solving, and painting"),
+        (
+            "estimate",
+            f"about {max(seconds, 0.1):.1f} s to solve {count * scene.steps / 1e6:.3g} million particle-steps",
+        ),
+        ("", f"on {cores} cores that are free, by the speed of this one now; start-up and painting besides"),
     )
     return "\n".join(f"{name:<12}{value}" for name, value in rows)
 
@@ -129,14 +133,16 @@ def expectation(scene: Scene) -> tuple[tuple[str, str], ...]:
 
 
 def list_scenes() -> str:
+    """Two lines for each scene: what it is, and its keywords with defaults, as --set takes them."""
     lines = []
     for name, path in available().items():
         try:
-            pairs = keywords_of(path).items()
-            text = ", ".join(f"{k}={v:g}" if isinstance(v, float) else f"{k}={shown(v)}" for k, v in pairs)
+            what, keywords = about(path)
         except SceneError as error:  # one bad file does not hide the others
-            text = "cannot be listed: " + " ".join(str(error).split())
-        lines.append(f"{name:<10} {text}")
+            what, keywords = "cannot be listed: " + " ".join(str(error).split()), {}
+        lines.append(f"{name:<15} {what}")
+        if keywords:
+            lines.append(f"{'':<15} {'  '.join(f'{key}={value}' for key, value in keywords.items())}")
     return "\n".join(lines)
 
 
@@ -154,7 +160,7 @@ def main(arguments: list[str] | None = None) -> int:
         find(options.scene)
         scene = build(options)
         if options.check:
-            print(describe(scene))
+            print(describe(scene, options.threads))
             for sentence in review(scene, scene.particles()):
                 say(sentence)
             return 0
@@ -226,15 +232,13 @@ def report(result) -> str:
         if s["peak_stress_Pa"] is not None:
             name = f"peak stress: {s['peak_filtered_Pa'] / 1e6:.3f} MPa, as a running median; in one row"
         lines.append(f"{name}: {s['largest_stress_Pa'] / 1e6:.3f} MPa; {counts}")
-    key, what = "initiation_angles_deg", "cracks leave the flaw"
-    if s["first_crack_angles_deg"]:  # rock that softens: its first 3 mm fail only when much around them has cracked
-        key, what = "first_crack_angles_deg", "first cracks lie"
-    angles = [f"{a:.0f}" for a in s[key] if a is not None]
+    angles = [f"{a:.0f}" for a in s["initiation_angles_deg"] if a is not None]
     if angles:
-        lines.append(f"{what} at {' and '.join(angles)} degrees from the flaw's plane")
+        lines.append(f"cracks leave the flaw at {' and '.join(angles)} degrees from its plane")
     if s["platen_imbalance"] is not None:
+        until = "the end" if s["first_failure_stress_Pa"] is None else "first failure"
         lines.append(
-            f"up to first failure: platen imbalance {100 * s['platen_imbalance']:.2g} %, "
+            f"up to {until}: platen imbalance {100 * s['platen_imbalance']:.2g} %, "
             f"kinetic over elastic energy {100 * s['kinetic_share']:.2g} %"
         )
     if s["dropped"]:

@@ -13,7 +13,7 @@ def scene(
     arc: Angle = 90.0,  # half-angle of the loaded arc [degrees]; 90: every node in touch with the platen row
     dx: Length = 0.5 * mm,
     strain_end: float = 1.1e-4,
-    time_scale: float = 8.0,
+    time_scale: float | str = 8.0,
 ) -> Scene:
     rock = Rock(
         density=2600.0,

@@ -14,7 +14,7 @@ def scene(
     dx: Length = 0.5 * mm,
     seed: int = 1,
     strain_end: float = 3.0e-4,
-    time_scale: float = 16.0,
+    time_scale: float | str = 16.0,
 ) -> Scene:
     flaw = Slit(centre=(50.0 * mm, 50.0 * mm), length=flaw_length, width=flaw_width, angle=flaw_angle, rounded=True)
     return brazilian_test(

@@ -56,6 +56,12 @@ class Sized(SimpleNamespace):
     def __init__(self, columns: SimpleNamespace):
         super().__init__(**vars(columns))
 
+    crack_angle = None  # of cracks without a direction
+
+    @property
+    def true_time(self) -> np.ndarray:
+        return self.time
+
     def __len__(self) -> int:
         return len(self.time)
 

@@ -20,8 +20,9 @@ from rsmpm_ti.rock.rock import Rock
 from rsmpm_ti.rock.tensors import PACKED_LENGTH
 from rsmpm_ti.rock.viscosity import BulkViscosity, NoViscosity
 from rsmpm_ti.spec.boundaries import Wall
+from rsmpm_ti.spec.domain import Domain
 from rsmpm_ti.spec.regions import Box
-from rsmpm_ti.spec.scene import Body, Domain, Loading, Scene, Schedule
+from rsmpm_ti.spec.scene import Body, Loading, Scene, Schedule
 from rsmpm_ti.spec.seeding import Seeds
 
 DX = 0.5e-3

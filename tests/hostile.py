@@ -24,11 +24,12 @@ from rsmpm_ti.errors import SceneError
 from rsmpm_ti.fields.state import initial_velocity
 from rsmpm_ti.output.pictures import load_limits, stress_limit
 from rsmpm_ti.rock.elasticity import Hooke
+from rsmpm_ti.spec.domain import Domain
 from rsmpm_ti.spec.load_cell import Gauge, LoadCell
 from rsmpm_ti.spec.loader import load_scene
 from rsmpm_ti.spec.loading_start import AtRest
 from rsmpm_ti.spec.regions import Box
-from rsmpm_ti.spec.scene import Body, Domain, Loading, Scene, Schedule
+from rsmpm_ti.spec.scene import Body, Loading, Scene, Schedule
 from rsmpm_ti.spec.scene_json import from_plain, to_plain
 from rsmpm_ti.units import Unit, quantity
 

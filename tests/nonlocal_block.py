@@ -12,8 +12,9 @@ from rsmpm_ti.rock.elasticity import Hooke
 from rsmpm_ti.rock.nonlocal_mean import Nonlocal
 from rsmpm_ti.rock.rock import Rock
 from rsmpm_ti.rock.smeared_crack import Directional
+from rsmpm_ti.spec.domain import Domain
 from rsmpm_ti.spec.regions import Box, Difference
-from rsmpm_ti.spec.scene import Body, Domain, Loading, Scene, Schedule
+from rsmpm_ti.spec.scene import Body, Loading, Scene, Schedule
 from rsmpm_ti.spec.seeding import Lattice
 
 DX = 1e-3

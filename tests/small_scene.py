@@ -11,10 +11,11 @@ from rsmpm_ti.rock.criteria import Unbreakable
 from rsmpm_ti.rock.elasticity import Hooke
 from rsmpm_ti.rock.rock import Rock
 from rsmpm_ti.spec.boundaries import Platen
+from rsmpm_ti.spec.domain import Domain
 from rsmpm_ti.spec.loader import available
 from rsmpm_ti.spec.loading_start import Affine
 from rsmpm_ti.spec.regions import Box
-from rsmpm_ti.spec.scene import Body, Domain, Loading, Scene, Schedule
+from rsmpm_ti.spec.scene import Body, Loading, Scene, Schedule
 from rsmpm_ti.spec.seeding import Lattice
 
 NAN, INF = float("nan"), float("inf")

@@ -3,11 +3,15 @@
 import subprocess
 import sys
 
+import numpy as np
 import pytest
 
+from rsmpm_ti.errors import SceneError
+from rsmpm_ti.method.shape import Linear
 from rsmpm_ti.records.files import write_json
 from rsmpm_ti.scene import build, main, parser
 from rsmpm_ti.spec.loader import available, keywords_of, load_scene
+from rsmpm_ti.spec.mass_scaling import estimate
 from rsmpm_ti.spec.scene import Scene
 from rsmpm_ti.spec.scene_json import to_plain
 
@@ -40,12 +44,28 @@ def refused(command, *arguments: str) -> str:
     return err
 
 
-def test_list_names_every_scene_and_its_keywords(command):
+def listed(out: str) -> dict[str, tuple[str, list[str]]]:
+    """Scene -> what is said of it, and its keywords with defaults."""
+    found, lines = {}, out.splitlines()
+    for line, after in zip(lines, [*lines[1:], "."], strict=True):
+        if line[0] != " ":
+            name, _, said = line.partition(" ")
+            found[name] = said.strip(), after.split() if after[0] == " " else []
+    return found
+
+
+def test_list_says_in_a_line_what_every_scene_is_and_its_keywords_with_units(command):
     status, out, err = command("--list")
     assert (status, err) == (0, "")
-    assert [line.split()[0] for line in out.splitlines()] == SHIPPED
-    cube = next(line for line in out.splitlines() if line.startswith("cube"))
-    assert "flaw_angle=45" in cube and "dx=0.0005" in cube
+    scenes = listed(out)
+    assert list(scenes) == SHIPPED
+    for name, (said, keywords) in scenes.items():
+        assert 20 < len(said) < 120
+        assert [keyword.partition("=")[0] for keyword in keywords] == list(keywords_of(available()[name]))
+        pairs = [part for keyword in keywords for part in ("--set", keyword)]
+        assert scene_of(name, *pairs) == load_scene(name), "what is shown can be set, and is the default"
+    assert {"flaw_angle=45deg", "dx=0.5mm", "strain_end=0.00025"} <= set(scenes["cube"][1])
+    assert {"confinement=2MPa"} <= set(scenes["confined"][1]) and {"G_f_I=5J/m2"} <= set(scenes["cube_lab"][1])
 
 
 @pytest.mark.parametrize("name", SHIPPED)
@@ -71,6 +91,60 @@ def test_override_reaches_a_keyword_and_a_dotted_field():
     assert turned.bodies[0].seeding.seed == 7
     assert scene_of("cube", "--set", "domain.grid=sparse").domain.grid == "sparse"
     assert scene_of("cube", "--set", "output.movie=false").output.movie is False
+
+
+OPENED = ["loading.boundaries.0.speed=-2.5e-3", "loading.boundaries.1.speed=2.5e-3"]
+
+TOGETHER = {
+    "two platens": (OPENED, ["strain_end=-2e-4"], lambda s: s.loading.strain_rate == pytest.approx(-0.05)),
+    "end": (["strain_end=none"], ["t_end=1ms"], lambda s: (s.schedule.strain_end, s.t_end) == (None, 1e-3)),
+    "end by its place": (["schedule.strain_end=none"], ["schedule.t_end=1ms"], lambda s: s.t_end == 1e-3),
+    "strengths": (["rock.criterion.tensile_strength=8MPa"], ["rock.criterion.cohesion=20MPa"],
+                  lambda s: s.rock.criterion.tensile_strength == 8e6),
+    "order and shape": (["shape=Linear"], ["order=usf"], lambda s: type(s.shape).__name__ == "Linear"),
+    "whole and part": (["bodies.0.seeding=Lattice"], ["bodies.0.seeding.particles_per_axis=3"],
+                       lambda s: s.bodies[0].seeding.particles_per_axis == 3),
+}  # fmt: skip
+"""Settings of which the first alone may be refused: pairs that make sense together."""
+
+
+@pytest.mark.parametrize("name", TOGETHER)
+def test_settings_are_merged_before_they_are_checked_in_any_order(name):
+    first, second, holds = TOGETHER[name]
+    for settings in (first + second, second + first):
+        assert holds(scene_of("cube", *[part for setting in settings for part in ("--set", setting)]))
+
+
+def test_what_settings_make_together_is_still_checked(command):
+    message = refused(command, "cube", *[part for s in OPENED for part in ("--set", s)])
+    assert "schedule.strain_end = 0.00025" in message and "loading.boundaries.0.speed" in message
+    assert "set the other to none" in refused(command, "cube", "--set", "t_end=1ms")
+
+
+@pytest.mark.parametrize("name", SHIPPED)
+@pytest.mark.parametrize("key", ["time_scale", "loading.time_scale"])
+def test_every_scene_takes_a_time_scale_by_tolerance(name, key):
+    scene = scene_of(name, "--quick", "--set", f"{key}=auto")
+    assert scene.loading.time_scale == "auto" and 1.0 < scene.time_scale < 1000.0
+
+
+@pytest.mark.parametrize("name", ["disc", "disc_lab"])
+def test_ramp_and_time_scale_of_a_disc_are_found_together(name):
+    """The ramp is that of the true density times the scale, and inertia then adds what is allowed, 1 %."""
+    scene = scene_of(name, "--quick", "--set", "time_scale=auto")
+    assert scene.loading.start.time == pytest.approx(0.3e-3 * scene.time_scale, rel=1e-6)
+    assert estimate(scene).error(scene.time_scale) == pytest.approx(0.01, rel=1e-6)
+
+
+def test_settings_in_python_are_numbers_texts_or_objects():
+    settings = {"rock.elasticity.E": 55e9, "shape": Linear(), "loading.body_force": [0.0, -9.81], "schedule.rows": 7}
+    settings |= {"rock.density": np.float32(2500.0)}
+    scene = load_scene("cube", settings=settings)
+    assert (scene.rock.elasticity.E, scene.shape, scene.schedule.rows) == (55e9, Linear(), 7)
+    assert scene.loading.body_force == (0.0, -9.81) and scene.rock.density == 2500.0
+    assert scene == load_scene("cube", settings=settings | {"rock.elasticity.E": "55 GPa"})
+    with pytest.raises(SceneError, match="elasticity.E"):
+        load_scene("cube", settings={"rock.elasticity.E": float("nan")})
 
 
 def test_options_change_what_they_say():
@@ -234,11 +308,11 @@ def test_bad_file_does_not_hide_the_other_scenes(command, tmp_path):
     for name, text in bad.items():
         (tmp_path / "scenes" / f"{name}.py").write_text(text)
     status, out, err = command("--list")
-    lines = {line.split()[0]: line for line in out.splitlines()}
-    assert (status, err) == (0, "") and sorted(lines) == sorted([*SHIPPED, *bad])
-    assert "flaw_angle=45" in lines["cube"]
-    assert "scenes/notes.py defines no function scene()" in lines["notes"]
-    assert "SyntaxError" in lines["syntax"] and "SystemExit" in lines["stops"]
+    scenes = listed(out)
+    assert (status, err) == (0, "") and sorted(scenes) == sorted([*SHIPPED, *bad])
+    assert "flaw_angle=45deg" in scenes["cube"][1]
+    assert "scenes/notes.py defines no function scene()" in scenes["notes"][0]
+    assert "SyntaxError" in scenes["syntax"][0] and "SystemExit" in scenes["stops"][0]
 
 
 def test_unwritable_output_is_refused_before_anything_compiles(command, tmp_path):

@@ -24,7 +24,7 @@ from rsmpm_ti.analysis.crack_path import (
 from rsmpm_ti.analysis.flaw_tips import FlawTip, first_angle, nearest_tip
 from rsmpm_ti.analysis.neighbours import bands_of, neighbour_graph
 from rsmpm_ti.analysis.wing_cracks import MIN_PARTICLES
-from rsmpm_ti.records.snapshot import INTACT, TENSION, Snapshot
+from rsmpm_ti.records.snapshot import INTACT, TENSION, Pattern, Snapshot
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -104,7 +104,7 @@ def _measure(events, band, graph, tips, spacing, time_scale) -> Crack:
             width=particles * spacing**2 / whole,
         )  # fmt: skip
     near = int(nearest_tip(x[:1], tips)[0])
-    angle = first_angle(x, mode, tips[near].outward) if near >= 0 else np.nan
+    angle = first_angle(events, band, tips[near]) if near >= 0 else np.nan
     return Crack(
         events=band,
         particles=particles,
@@ -119,6 +119,29 @@ def _measure(events, band, graph, tips, spacing, time_scale) -> Crack:
         speed_at=tip_speed(time, length, WINDOW * time_scale),
         course=course,
     )
+
+
+def carried(
+    paths: list[np.ndarray], bands: list[np.ndarray], events, pattern: Snapshot | Pattern, spacing: float
+) -> list[np.ndarray]:
+    """Paths of bands, which are places at failure, carried along with the rock to where it is at one instant.
+
+    A point goes as far as the particles of its band around it have gone since they failed, in the median: one that the
+    crack has spat out does not draw it away. Left out are bands that have left the domain.
+    """
+    x = pattern.x[:, :2]
+    moved = []
+    for path, band in zip(paths, bands, strict=False):  # in 3D there are no paths
+        kept = band[np.isin(events.id[band], pattern.id)]
+        way = x[np.searchsorted(pattern.id, events.id[kept])] - events.x[kept]
+        kept, way = kept[np.isfinite(way).all(axis=1)], way[np.isfinite(way).all(axis=1)]
+        if len(kept):
+            tree = cKDTree(events.x[kept])
+            around = tree.query_ball_point(path, REACH * spacing)
+            nearest = tree.query(path)[1]
+            ways = [np.median(way[near], axis=0) if near else way[nearest[k]] for k, near in enumerate(around)]
+            moved.append(path + np.array(ways))
+    return moved
 
 
 def openings(cracks: list[Crack], events, snapshot: Snapshot, dx: float) -> list[np.ndarray]:

@@ -5,13 +5,13 @@ from dataclasses import dataclass
 import numpy as np
 
 from rsmpm_ti.analysis.acoustic_emission import BValue, Catalogue, b_value, gather
-from rsmpm_ti.analysis.crack_bands import Crack, find_bands, measure_cracks, openings
-from rsmpm_ti.analysis.crack_path import rayleigh_speed
+from rsmpm_ti.analysis.crack_bands import Crack, carried, find_bands, measure_cracks, openings
+from rsmpm_ti.analysis.crack_path import centre_path, rayleigh_speed
 from rsmpm_ti.analysis.flaw_tips import FlawTip, flaw_tips, initiations
 from rsmpm_ti.analysis.fragments import Fragments, find_fragments
 from rsmpm_ti.analysis.numerical_fracture import parting_warning
 from rsmpm_ti.records.events import EventTable
-from rsmpm_ti.records.snapshot import Snapshot
+from rsmpm_ti.records.snapshot import Pattern, Snapshot
 from rsmpm_ti.spec.regions import slits_of
 from rsmpm_ti.spec.scene import Scene
 
@@ -28,6 +28,8 @@ class Fracture:
     b: BValue | None
     rayleigh_speed: float  # of the rock as run, mass scaling included [m/s]
     dim: int
+    lines: list[np.ndarray]  # of the cracks, to be drawn where the rock is at the end, [k, 2] [m]; none in 3D
+    time_scale: float = 1.0
     warning: str = ""  # numerical fracture, see `numerical_fracture.py`
 
     def numbers(self) -> dict:
@@ -41,14 +43,26 @@ class Fracture:
             "acoustic_events": len(self.acoustic),
             "b_value": self.b.b if self.b else None,
             "b_value_error": self.b.error if self.b else None,
+            # of one flaw; of more the list below tells them apart
+            "initiation_angles_deg": [tip["angle_deg"] for tip in self.initiation] if len(self.initiation) == 2 else [],
             "initiation": self.initiation,
             "numerical_fracture": self.warning or None,
         }
 
-    @property
-    def paths(self) -> list[np.ndarray]:
-        """The cracks' lines, to be drawn, list of [k, 2] [m]; none in 3D."""
-        return [crack.course.path for crack in self.cracks if crack.course is not None]
+
+def crack_lines(scene: Scene, events: EventTable, pattern: Snapshot | Pattern) -> list[np.ndarray]:
+    """The lines of the cracks that there are at one instant, where the rock is then, list of [k, 2] [m]; none in 3D."""
+    if scene.dim != 2:
+        return []
+    spacing, events = spacing_of(scene), events.until(pattern.time)
+    bands, graph = find_bands(events, spacing)
+    paths = [centre_path(events.x[band], graph[band][:, band], spacing) for band in bands]
+    return carried(paths, bands, events, pattern, spacing)
+
+
+def spacing_of(scene: Scene) -> float:
+    """The largest initial spacing of particles [m]."""
+    return max(scene.domain.dx / body.seeding.particles_per_axis for body in scene.bodies)
 
 
 def measure_fracture(scene: Scene, history: np.ndarray, events: EventTable, snapshot: Snapshot) -> Fracture:
@@ -56,7 +70,7 @@ def measure_fracture(scene: Scene, history: np.ndarray, events: EventTable, snap
 
     With mass scaling every speed of a run is that of the scaled rock, so acoustic events and tip speeds use its waves.
     """
-    spacing = max(scene.domain.dx / body.seeding.particles_per_axis for body in scene.bodies)
+    spacing = spacing_of(scene)
     shear_speed = float(np.sqrt(scene.rock.elasticity.mu / scene.density))
     tips: tuple[FlawTip, ...] = ()
     if scene.dim == 2:
@@ -73,5 +87,7 @@ def measure_fracture(scene: Scene, history: np.ndarray, events: EventTable, snap
         b=b_value(acoustic.magnitude),
         rayleigh_speed=rayleigh_speed(shear_speed, scene.wave_speed),
         dim=scene.dim,
+        lines=carried([c.course.path for c in cracks if c.course is not None], bands, events, snapshot, spacing),
+        time_scale=scene.time_scale,
         warning=parting_warning(scene, snapshot),
     )

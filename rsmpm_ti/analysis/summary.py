@@ -39,9 +39,9 @@ def summarise(scene: Scene, history: np.ndarray, events: EventTable, energy_star
         "first_failure_stress_Pa": None,
         "first_failure_strain": None,
         "first_failure_time_s": None,
+        "first_failure_true_time_s": None,
         "first_failure_mode": None,
         "first_failure_position_m": None,
-        "initiation_angles_deg": [],
         "first_crack_angles_deg": [],
         "wing_reach_m": [],
         "half_turn_mismatch_m": None,
@@ -49,7 +49,7 @@ def summarise(scene: Scene, history: np.ndarray, events: EventTable, energy_star
         "failed_shear": int(np.sum(events.mode != TENSION)),
     }
     if len(events):
-        out["first_failure_time_s"] = first
+        out["first_failure_time_s"], out["first_failure_true_time_s"] = first, float(events.true_time[0])
         out["first_failure_mode"] = MODE_NAMES[events.mode[0]]
         out["first_failure_position_m"] = events.x[0].tolist()
     for name, time in (("onset", onset), ("first_failure", first)):
@@ -132,7 +132,7 @@ def _crack_numbers(scene: Scene, events: EventTable) -> dict:
     slit, body = slits[0]
     spacing = scene.domain.dx / body.seeding.particles_per_axis
     pair = wings(events.x[events.mode == TENSION], slit, spacing)
-    out: dict = {"initiation_angles_deg": [None if w is None or np.isnan(w.angle) else w.angle for w in pair]}
+    out: dict = {}
     if events.crack_angle is not None:
         tension = events.mode == TENSION
         angles = first_crack_angles(events.x[tension].astype(float), events.crack_angle[tension].astype(float), slit)

@@ -20,12 +20,11 @@ MIN_PARTICLES = 6
 
 @dataclass(frozen=True)
 class Wing:
-    """The crack that grew from one tip. `points` [n, 2] are failure places in order of time; angle in degrees."""
+    """The crack that grew from one tip. `points` [n, 2] are failure places in order of time."""
 
     tip: np.ndarray
     start: np.ndarray
     points: np.ndarray
-    angle: float
 
 
 def wings(x: np.ndarray, slit: Slit, spacing: float) -> list[Wing | None]:
@@ -46,7 +45,7 @@ def _wing(x: np.ndarray, slit: Slit, spacing: float, sign: float) -> Wing | None
     half = (x - np.array(slit.centre[:2])) @ outward > 0.0  # the other tip's crack is never part of this one
     member = _connected(x, REACH * spacing, near[0], half)
     points, start = x[member], x[near[0]]
-    return Wing(tip=tip, start=start, points=points, angle=leaving_angle(points, start, outward))
+    return Wing(tip=tip, start=start, points=points)
 
 
 def leaving_angle(points: np.ndarray, start: np.ndarray, outward: np.ndarray) -> float:

@@ -34,14 +34,25 @@ def tensile_load(sim: ti.template(), p, own):
 
 
 @ti.kernel
-def evaluate_margins(
+def evaluate_damage(
     sim: ti.template(),
-    margin: ti.types.ndarray(dtype=ti.f64, ndim=1),
     governs: ti.types.ndarray(dtype=ti.i32, ndim=1),
     damage: ti.types.ndarray(dtype=ti.f64, ndim=1),
     failed: ti.types.ndarray(dtype=ti.i32, ndim=1),
 ):
-    particles, criterion, law = sim.particles, sim.rock.criterion, sim.rock.after_failure
+    particles, law = sim.particles, sim.rock.after_failure
+    for p in particles.mode:
+        if particles.mode[p] != 0:
+            governs[p], damage[p], failed[p] = particles.mode[p], law.damage(sim, p), law.failed_mode(sim, p)
+
+
+@ti.kernel
+def evaluate_margins(
+    sim: ti.template(),
+    margin: ti.types.ndarray(dtype=ti.f64, ndim=1),
+    governs: ti.types.ndarray(dtype=ti.i32, ndim=1),
+):
+    particles, criterion = sim.particles, sim.rock.criterion
     for p in particles.mode:
         if particles.mode[p] == 0:
             load = load_factors(sim, p, extreme_principals(particles.sigma[p]))
@@ -51,21 +62,27 @@ def evaluate_margins(
             if ti.max(tension, shear) > 0.0:
                 governs[p] = ti.select(tension >= shear, 1, 2)  # tension is checked first
         else:
-            margin[p], governs[p], damage[p] = 0.0, particles.mode[p], law.damage(sim, p)
-            failed[p] = law.failed_mode(sim, p)
+            margin[p] = 0.0
+
+
+def damages(sim) -> dict[str, np.ndarray]:
+    """`damage`, `failure_mode` and what `governs` it of particles that have begun to crack, [n] each, 0 in others."""
+    n = sim.particles.count
+    governs, damage, failed = np.zeros(n, dtype=np.int32), np.zeros(n), np.zeros(n, dtype=np.int32)
+    if sim.particles.breaks:
+        evaluate_damage(sim, governs, damage, failed)
+    return {"governs": governs, "damage": damage, "failure_mode": failed}
 
 
 def margins(sim) -> dict[str, np.ndarray]:
     """`margin` to failure, what `governs` it (0 nothing, 1 tension, 2 shear), `damage` and `failure_mode`, [n] each, as
     particles lie.
 
-    1, 0, 0 and 0 everywhere in rock that does not break. See `Snapshot` for what they mean in rock that has failed.
+    NaN, 0, 0 and 0 everywhere in rock that does not break. See `Snapshot` for what they mean in rock that has failed.
     """
-    n = sim.particles.count
-    margin, governs, damage = np.ones(n), np.zeros(n, dtype=np.int32), np.zeros(n)
-    failed = np.zeros(n, dtype=np.int32)
+    margin, found = np.full(sim.particles.count, np.nan), damages(sim)
     if sim.particles.breaks:
         if sim.is_nonlocal:
             sum_nonlocal(sim)
-        evaluate_margins(sim, margin, governs, damage, failed)
-    return {"margin": margin, "governs": governs, "damage": damage, "failure_mode": failed}
+        evaluate_margins(sim, margin, found["governs"])
+    return {"margin": margin, **found}

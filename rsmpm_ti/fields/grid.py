@@ -4,7 +4,8 @@ import numpy as np
 import taichi as ti
 
 from rsmpm_ti.fields.side_motion import held_sides, side_speeds
-from rsmpm_ti.spec.scene import MARGIN, Scene
+from rsmpm_ti.spec.domain import MARGIN
+from rsmpm_ti.spec.scene import Scene
 
 NO_WALL = -(10**6)
 """Wall index of an axis without a wall."""

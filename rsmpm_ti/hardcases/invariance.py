@@ -12,9 +12,10 @@ from rsmpm_ti.hardcases.pieces import C_P, DENSITY, DX, ELASTIC, NU, E, Piece, b
 from rsmpm_ti.hardcases.steps import block
 from rsmpm_ti.rock.elasticity import Hooke
 from rsmpm_ti.spec.boundaries import Platen
+from rsmpm_ti.spec.domain import Domain
 from rsmpm_ti.spec.loading_start import Affine
 from rsmpm_ti.spec.regions import Box
-from rsmpm_ti.spec.scene import Body, Domain, Loading, Schedule
+from rsmpm_ti.spec.scene import Body, Loading, Schedule
 
 MIDDLE = 6.5
 """Of the block of 5 x 5 cells, on both axes [cells]."""

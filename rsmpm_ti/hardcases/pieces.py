@@ -16,8 +16,9 @@ from rsmpm_ti.rock.tensors import PACKED_LENGTH
 from rsmpm_ti.rock.viscosity import NoViscosity
 from rsmpm_ti.solver.advance import Drive
 from rsmpm_ti.solver.survey import survey
+from rsmpm_ti.spec.domain import Domain
 from rsmpm_ti.spec.regions import Box
-from rsmpm_ti.spec.scene import Body, Domain, Loading, Scene, Schedule
+from rsmpm_ti.spec.scene import Body, Loading, Scene, Schedule
 
 E, NU, DENSITY = 17e9, 0.14, 2600.0
 DX = 1e-3

@@ -7,7 +7,7 @@ from rsmpm_ti.checks import members
 from rsmpm_ti.output.fracture_tables import ACOUSTIC, CRACKS, FRAGMENTS
 from rsmpm_ti.records.events import EVENTS
 from rsmpm_ti.records.history_table import HISTORY
-from rsmpm_ti.records.snapshot import PARTICLES
+from rsmpm_ti.records.snapshot import INSTANT, PARTICLES
 from rsmpm_ti.records.summary_table import RECORD, SUMMARY
 from rsmpm_ti.records.tables import Table
 from rsmpm_ti.rock.rock import Rock
@@ -20,7 +20,8 @@ HEAD = """\
 A run writes into one folder, `renders/NAME` unless `--out` says otherwise. Every file appears under its name only when
 it is complete. SI units throughout; angles in degrees. Stresses of the load curve are compression positive, as tests
 report them; stresses of particles and failures are tension positive. In 2D energies, masses and forces are per metre of
-thickness. In a CSV an empty cell means *not defined*, and so does `null` in JSON; numbers have ten digits. A name with
+thickness. In a CSV an empty cell means *not defined*, and so does `null` in JSON and `NaN` in a VTU file: a number that
+is not finite is never written otherwise, and no 0 in place of it. Numbers in a CSV have ten digits. A name with
 `{axis}` stands for one column for each axis: x, y and in 3D z.
 
 | file | what it is |
@@ -29,7 +30,7 @@ thickness. In a CSV an empty cell means *not defined*, and so does `null` in JSO
 | `frames/cracks_0000.png`, ... | what has failed, and how |
 | `frames/margin_0000.png`, ... | how near the rock is to failure; with `--margin` |
 | `NAME.mp4` | cracks on the left, stress on the right, of all frames |
-| `summary.png` | the last state with its cracks, and the load curve with acoustic events |
+| `summary.png` | the load curve with acoustic events; the cracks at the largest load and at the end |
 """
 
 TAIL = """\
@@ -62,7 +63,7 @@ run at its own interval and write what it likes; see its docstring, and that of 
 opening.
 """
 
-TABLES = (HISTORY, EVENTS, CRACKS, FRAGMENTS, ACOUSTIC, PARTICLES, SUMMARY, RECORD)
+TABLES = (HISTORY, EVENTS, CRACKS, FRAGMENTS, ACOUSTIC, PARTICLES, INSTANT, SUMMARY, RECORD)
 
 
 def anchor(table: Table) -> str:

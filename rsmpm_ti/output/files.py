@@ -7,7 +7,7 @@ import numpy as np
 
 from rsmpm_ti.records.events import EVENTS, EventTable
 from rsmpm_ti.records.files import complete, write_csv
-from rsmpm_ti.records.snapshot import PARTICLES, Snapshot
+from rsmpm_ti.records.snapshot import INSTANT, MODE_NAMES, PARTICLES, Snapshot
 from rsmpm_ti.records.tables import Table
 
 
@@ -25,11 +25,12 @@ def write_events(path: Path, events: EventTable) -> None:
     write_table(path, EVENTS, events, events.x.shape[1])
 
 
-def write_vtu(path: Path, snapshot: Snapshot) -> None:
+def write_vtu(path: Path, snapshot: Snapshot, instant: dict[str, float] | None = None) -> None:
     """Particles as vertices for ParaView.
 
     Positions are in double precision. The rest is in single, which takes half of the time and of the disk; a checkpoint
-    holds every digit.
+    holds every digit. instant: numbers of the whole specimen then (INSTANT), which become field data, with the codes
+    of failure modes; those that are not known are left out.
     """
     import meshio
 
@@ -40,6 +41,28 @@ def write_vtu(path: Path, snapshot: Snapshot) -> None:
     mesh = meshio.Mesh(_padded(snapshot.x), [("vertex", np.arange(len(snapshot.x))[:, None])], point_data=fields)
     with complete(path) as part:
         meshio.write(part, mesh, file_format="vtu", binary=True, compression="zlib")
+        grid = b"<UnstructuredGrid>"
+        before, _, after = part.read_bytes().partition(grid)  # meshio writes no field data
+        part.write_bytes(b"".join((before, _legend(), grid, _field_data(instant or {}), after)))
+
+
+def _field_data(instant: dict[str, float]) -> bytes:
+    """Numbers, since readers such as meshio know no texts: a code is a field of its name."""
+    known = {name: float(number) for name, number in instant.items() if np.isfinite(number)}
+    numbers = [("Float64", name, f"{number:.17g}") for name, number in known.items()]
+    numbers += [("Int8", f"failure_mode_{name}", str(mode)) for mode, name in enumerate(MODE_NAMES)]
+    arrays = "".join(
+        f'<DataArray type="{kind}" Name="{name}" NumberOfTuples="1" format="ascii">{number}</DataArray>\n'
+        for kind, name, number in numbers
+    )
+    return f"<FieldData>\n{arrays}</FieldData>\n".encode()
+
+
+def _legend() -> bytes:
+    """What each array is, for whoever opens the file as text."""
+    columns = [*INSTANT.columns, *PARTICLES.columns]
+    lines = [f"{column.name} [{column.unit}]: {column.about}".replace("--", "-") for column in columns]
+    return "\n".join(["<!-- SI units, tension positive", *lines, "-->", ""]).encode()
 
 
 def _as_point_data(entries: np.ndarray, dim: int) -> np.ndarray:

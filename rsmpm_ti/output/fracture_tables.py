@@ -24,6 +24,7 @@ class CrackRow:
     stress: float  # nominal, when it began [Pa]
     strain: float
     rayleigh_speed: float  # [m/s]
+    time_scale: float
     aperture: np.ndarray  # opening along its path where it is known [m]
     slip: np.ndarray  # sliding of its faces there [m]
 
@@ -34,6 +35,7 @@ class Named:
 
     name: int | str
     fragment: Fragment
+    time_scale: float
 
 
 def each(value: Callable) -> Callable:
@@ -76,6 +78,10 @@ CRACKS = Table(
             value=each(lambda row: row.crack.origin.time),
         ),
         Column(
+            name="initiation_true_time_s", unit="s", about="the same without mass scaling: over time_scale",
+            value=each(lambda row: row.crack.origin.time / row.time_scale),
+        ),
+        Column(
             name="initiation_stress_Pa", unit="Pa", about="nominal stress then, compression positive",
             value=each(lambda row: row.stress),
         ),
@@ -95,7 +101,8 @@ CRACKS = Table(
             value=each(lambda row: row.crack.origin.tip),
         ),
         Column(
-            name="leaving_angle_deg", unit="degree", about="between the flaw's continuation and the crack",
+            name="leaving_angle_deg", unit="degree", about="between the flaw's continuation and the crack, by the rule "
+            "of `initiation[].angle_deg` of summary.json",
             value=each(lambda row: row.crack.origin.angle),
         ),
         Column(
@@ -105,6 +112,10 @@ CRACKS = Table(
         Column(
             name="tip_speed_m_s", unit="m/s", about="largest speed of its tip, in the run's own time",
             value=each(lambda row: float(row.crack.speed_at.max())),
+        ),
+        Column(
+            name="true_tip_speed_m_s", unit="m/s", about="the same without mass scaling: times time_scale",
+            value=each(lambda row: float(row.crack.speed_at.max()) * row.time_scale),
         ),
         Column(
             name="tip_speed_over_rayleigh", unit="1", about="the same over the Rayleigh speed of the rock as run",
@@ -156,7 +167,14 @@ FRAGMENTS = Table(
             value=each(lambda row: row.fragment.diameter),
         ),
         Column(name="{axis}_m", unit="m", about="its centre of mass", value=each(lambda row: row.fragment.centroid)),
-        Column(name="v{axis}_m_s", unit="m/s", about="its velocity", value=each(lambda row: row.fragment.velocity)),
+        Column(
+            name="v{axis}_m_s", unit="m/s", about="its velocity, in the run's own time",
+            value=each(lambda row: row.fragment.velocity),
+        ),
+        Column(
+            name="true_v{axis}_m_s", unit="m/s", about="the same without mass scaling: times time_scale",
+            value=each(lambda row: row.fragment.velocity * row.time_scale),
+        ),
     ),
 )  # fmt: skip
 
@@ -168,6 +186,10 @@ ACOUSTIC = Table(
     ),
     columns=(
         Column(name="time_s", unit="s", about="of its first failure", value=lambda s: s.catalogue.time),
+        Column(
+            name="true_time_s", unit="s", about="the same without mass scaling: time_s / time_scale",
+            value=lambda s: s.catalogue.time / s.time_scale,
+        ),
         Column(name="{axis}_m", unit="m", about="where that was, the hypocentre", value=lambda s: s.catalogue.position),
         Column(
             name="energy_J", unit="J", about="released by all its failures; per metre of thickness in 2D",
@@ -204,14 +226,16 @@ class Heard:
 
     catalogue: object
     stress: np.ndarray
+    time_scale: float
 
 
 def write_fracture(out: Path, fracture: Fracture, history: np.ndarray) -> None:
     """cracks.csv, fragments.csv and acoustic.csv; with nothing in them, their headers."""
-    pieces = [Named(name=k, fragment=piece) for k, piece in enumerate(fracture.fragments.pieces)]
+    scale = fracture.time_scale
+    pieces = [Named(name=k, fragment=piece, time_scale=scale) for k, piece in enumerate(fracture.fragments.pieces)]
     if fracture.fragments.dust is not None:
-        pieces.append(Named(name="dust", fragment=fracture.fragments.dust))
-    heard = Heard(fracture.acoustic, load_at(history, fracture.acoustic.time)[0])
+        pieces.append(Named(name="dust", fragment=fracture.fragments.dust, time_scale=scale))
+    heard = Heard(fracture.acoustic, load_at(history, fracture.acoustic.time)[0], scale)
     write_table(out / CRACKS.file, CRACKS, _crack_rows(fracture, history), fracture.dim)
     write_table(out / FRAGMENTS.file, FRAGMENTS, pieces, fracture.dim)
     write_table(out / ACOUSTIC.file, ACOUSTIC, heard, fracture.dim)
@@ -230,6 +254,7 @@ def _crack_rows(fracture: Fracture, history: np.ndarray) -> list[CrackRow]:
                 stress=float(stress),
                 strain=float(strain),
                 rayleigh_speed=fracture.rayleigh_speed,
+                time_scale=fracture.time_scale,
                 aperture=opening[known],
                 slip=slip[known],
             )  # fmt: skip

@@ -1,5 +1,6 @@
 """The pictures of one run: frames, the movie that is made of them, and summary.png."""
 
+from collections.abc import Sequence
 from pathlib import Path
 
 import numpy as np
@@ -9,7 +10,7 @@ from rsmpm_ti.paint.figure import FramePainter
 from rsmpm_ti.paint.movie import Movie
 from rsmpm_ti.paint.png import read_png, write_png
 from rsmpm_ti.paint.summary_picture import summary_picture
-from rsmpm_ti.records.snapshot import Snapshot
+from rsmpm_ti.records.snapshot import Pattern, Snapshot
 
 
 class Gallery:
@@ -50,16 +51,26 @@ class Gallery:
         if self._movie is not None:
             self._movie.discard()
 
-    def close(self, snapshot: Snapshot, history: np.ndarray, paths: list[np.ndarray], acoustic: np.ndarray) -> None:
+    def close(
+        self,
+        snapshot: Snapshot,
+        history: np.ndarray,
+        lines: list[np.ndarray],
+        acoustic: np.ndarray,
+        peak: Pattern | None = None,
+        peak_lines: Sequence[np.ndarray] = (),
+    ) -> None:
         """Finish the movie, paint summary.png, give the painters' memory back.
 
-        paths: lines of cracks, each [k, 2] [m]; acoustic: times of acoustic events, ascending [s].
+        lines: of cracks, where the rock is at the end, each [k, 2] [m]; acoustic: times of acoustic events, ascending
+        [s]; peak: the crack pattern at the largest load, with its own lines.
         """
         if self._movie is not None:
             self._movie.close()
         summary_picture(
-            self._out / "summary.png", snapshot, history, self.painters["cracks"], self._wanted.title, paths, acoustic
-        )
+            self._out / "summary.png", snapshot, history, self.painters["cracks"], self._wanted.title, lines, acoustic,
+            peak, peak_lines,
+        )  # fmt: skip
         for painter in self.painters.values():
             painter.close()
 

@@ -4,6 +4,7 @@ import math
 
 from rsmpm_ti.output.folder import forget
 from rsmpm_ti.output.writer import Writer
+from rsmpm_ti.records.snapshot import INSTANT, Pattern
 from rsmpm_ti.solver.observer import Observer
 from rsmpm_ti.solver.view import View
 
@@ -20,7 +21,7 @@ class Frames(Observer):
         """frames: how many at equal intervals, beside that of the start; jumps at most double that."""
         self._writer, self._frames = writer, frames
         self._jump = max(1.0, JUMP_FRACTION * particle_count)
-        self._extra, self._next = frames, 0
+        self._used, self._next = 0, 0  # frames added at jumps; the next one that is due
         self._failed, self._count = 0.0, 0
 
     def see(self, view: View) -> None:
@@ -35,34 +36,71 @@ class Frames(Observer):
         due = fraction >= self._next / self._frames - 1e-9
         if due:
             self._next = math.floor(fraction * self._frames + 1e-9) + 1
-        elif self._extra > 0 and failed - self._failed >= max(self._jump, JUMP_GROWTH * self._failed):
-            self._extra -= 1
+        elif self._used < self._frames and failed - self._failed >= max(self._jump, JUMP_GROWTH * self._failed):
+            self._used += 1
             due = True
         if due:
             self._failed = failed
         return due
 
     def state(self) -> dict:
-        return {"next": self._next, "extra": self._extra, "failed": self._failed, "count": self._count}
+        return {"next": self._next, "used": self._used, "failed": self._failed, "count": self._count}
 
     def resume(self, state: dict) -> None:
-        self._next, self._extra = state["next"], state["extra"]
+        self._next, self._used = state["next"], state["used"]
         self._failed, self._count = state["failed"], state["count"]
         forget(self._writer.out, "frames/*_[0-9]*.png", keep=self._count)
         self._writer.refilm(self._count)
+
+    def realign(self, fraction: float) -> None:
+        self._next = math.floor(fraction * self._frames + 1e-9) + 1 if self._count else 0
+
+    def catch_up(self, view: View) -> None:
+        """The first picture of a run that was done without any."""
+        if self._count == 0:
+            self.see(view)
+
+
+class LargestLoad(Observer):
+    """Keeps the crack pattern at the history row of the largest load, for summary.png; None while nothing has cracked.
+
+    A collapse leaves rubble: the pattern that a test is known by is the one at its peak.
+    """
+
+    every = 0.0  # it looks at every row
+
+    def __init__(self):
+        self.pattern: Pattern | None = None
+        self._largest = 0.0
+
+    def see(self, view: View) -> None:
+        load = abs(view.load.stress)
+        if load > self._largest:  # not so of NaN
+            self._largest, self.pattern = load, view.pattern if view.begun else None
+
+    def state(self) -> dict:
+        return {"largest": self._largest, **({} if self.pattern is None else vars(self.pattern))}
+
+    def resume(self, state: dict) -> None:
+        self._largest = state["largest"]
+        kept = {name: value for name, value in state.items() if name != "largest"}
+        self.pattern = Pattern(**kept) if kept else None
 
 
 class ParticleFiles(Observer):
     """A VTU file of all particles at equal intervals of the run."""
 
     def __init__(self, writer: Writer, files: int):
-        """files: how many, beside that of the start."""
-        self._writer, self.every = writer, 1.0 / files
+        """files: how many, beside that of the start; 0 for none at all."""
+        self._writer, self._files, self.every = writer, files, 1.0 / max(files, 1)
         self._entries: list[tuple[float, str]] = []
 
     def see(self, view: View) -> None:
+        if self._files == 0:
+            return
         self._entries.append((view.time, f"particles_{len(self._entries):04d}.vtu"))
-        self._writer.vtu(list(self._entries), view.readout)
+        instant = {column.name: float(column.value(view)) for column in INSTANT.columns if column.value is not None}
+        self._writer.vtu(list(self._entries), view.readout, instant)
 
     def state(self) -> dict:
         return {"entries": self._entries}
@@ -70,3 +108,8 @@ class ParticleFiles(Observer):
     def resume(self, state: dict) -> None:
         self._entries = [tuple(entry) for entry in state["entries"]]
         forget(self._writer.out, "particles_[0-9]*.vtu", keep=len(self._entries))
+
+    def catch_up(self, view: View) -> None:
+        """The first file of a run that was done without any."""
+        if not self._entries:
+            self.see(view)

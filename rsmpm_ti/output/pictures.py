@@ -1,5 +1,6 @@
 """What to paint of a run: kinds of frames, limits and titles, in plain values."""
 
+import math
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -32,11 +33,24 @@ def commission(scene: Scene, name: str, out: Path, volume: float) -> Commission:
     painters = {
         "lower": tuple(lower), "upper": tuple(upper), "stress_limit": stress_limit(scene, load),
         "strain_limit": strain, "load_limit": load, "backend": scene.output.painter, "softens": softens(scene),
+        "load_name": load_name(scene),
     }  # fmt: skip
     kinds = ("stress", "cracks", "margin") if scene.output.margin else ("stress", "cracks")
     return Commission(
         kinds=kinds, painters=painters, title=scene.title, name=name, movie=scene.output.movie, out=Path(out)
     )
+
+
+def load_name(scene: Scene) -> str:
+    """Of the load axis. Total: confining pressure is part of it. Axial where the loaded width is the specimen's own, so
+    that it is the mean stress of a section; the nominal stress of a disc is not."""
+    cell = scene.loading.load_cell
+    if cell is None or cell.axis is None or cell.width is None:
+        return "total nominal stress"
+    low, high = zip(*(body.region.bounds() for body in scene.bodies), strict=True)
+    edges = np.max(high, axis=0) - np.min(low, axis=0)
+    own = math.isclose(cell.width, math.prod(np.delete(edges, cell.axis)), rel_tol=1e-6)
+    return "total axial stress" if own else "total nominal stress"
 
 
 def softens(scene: Scene) -> bool:

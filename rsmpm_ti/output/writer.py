@@ -20,7 +20,6 @@ import numpy as np
 import rsmpm_ti
 from rsmpm_ti.errors import SceneError
 from rsmpm_ti.output.pictures import Commission
-from rsmpm_ti.records.snapshot import Snapshot
 from rsmpm_ti.solver.readout import Readout
 
 WAITING_BYTES = 512 * 2**20
@@ -60,16 +59,17 @@ class Writer:
     def frame(self, number: int, readout: Readout, history: np.ndarray) -> None:
         self._order("frame", number, readout, history)
 
-    def vtu(self, entries: list[tuple[float, str]], readout: Readout) -> None:
-        """entries: (time [s], file name) of every VTU so far, the last of which is to be written."""
-        self._order("vtu", entries, readout)
+    def vtu(self, entries: list[tuple[float, str]], readout: Readout, instant: dict[str, float]) -> None:
+        """entries: (time [s], file name) of every VTU so far, the last of which is to be written; instant: its field
+        data."""
+        self._order("vtu", entries, readout, instant)
 
     def checkpoint(self, arrays: dict[str, np.ndarray]) -> None:
         self._order("checkpoint", arrays)
 
-    def close(self, snapshot: Snapshot, history: np.ndarray, paths: list[np.ndarray], acoustic: np.ndarray) -> None:
+    def close(self, *last) -> None:
         """Wait for everything, the movie and summary.png last; arguments as of `Gallery.close`."""
-        self._order("close", snapshot, history, paths, acoustic)
+        self._order("close", *last)
         self._settle(0)
         self._end()
 

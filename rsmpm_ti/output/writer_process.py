@@ -39,8 +39,8 @@ class Desk:
     def frame(self, number: int, readout, history) -> None:
         self._later(self.gallery.write, number, self.gallery.paint(number, readout.snapshot(), history))
 
-    def vtu(self, entries, readout) -> None:
-        self._later(write_vtu, self.out / entries[-1][1], readout.snapshot())
+    def vtu(self, entries, readout, instant) -> None:
+        self._later(write_vtu, self.out / entries[-1][1], readout.snapshot(), instant)
         self._later(write_pvd, self.out / "particles.pvd", entries)
 
     def checkpoint(self, arrays) -> None:

@@ -15,8 +15,9 @@ from rsmpm_ti.paint.frame_kinds import Look, crack_look, cracking_look, margin_l
 from rsmpm_ti.paint.ggui import Ggui, probe
 from rsmpm_ti.paint.layout import TEXT_LINE, Box, lay_out
 from rsmpm_ti.paint.raster import Raster
+from rsmpm_ti.paint.words import drawable
 from rsmpm_ti.records.history_table import nominal_stress
-from rsmpm_ti.records.snapshot import SHEAR, TENSION, Snapshot
+from rsmpm_ti.records.snapshot import SHEAR, TENSION, Pattern, Snapshot
 
 KINDS = ("stress", "cracks", "margin")
 PAINTERS = {"raster": Raster, "ggui": Ggui}
@@ -53,7 +54,7 @@ class FramePainter:
         title: str | None = None,
         convention: str = "tension positive",
         strain_name: str = "axial strain",
-        load_name: str = "axial stress",
+        load_name: str = "total axial stress",
     ):
         if kind not in KINDS:
             raise refuse("kind", kind, f"one of {', '.join(KINDS)}")
@@ -71,7 +72,8 @@ class FramePainter:
 
         self.kind = kind
         self.backend = backend
-        look = self._look(stress_limit, softens, title, convention, strain_name, load_name)
+        words = [None if text is None else drawable(text) for text in (title, convention, strain_name, load_name)]
+        look = self._look(stress_limit, softens, *words)
         self._palette, self.wording, self._value = look.palette, look.wording, look.value
         self.layout = lay_out(lower[:2], upper[:2], size, TEXT_LINES, len(look.wording.legend))
         self._limits = None if strain_limit is None or load_limit is None else (strain_limit, load_limit)
@@ -86,7 +88,7 @@ class FramePainter:
             return margin_look(title, inset)
         return cracking_look(title, inset) if softens else crack_look(title, inset)
 
-    def panel(self, snapshot: Snapshot) -> np.ndarray:
+    def panel(self, snapshot: Snapshot | Pattern) -> np.ndarray:
         """The particles alone, uint8 [h, w, 3]; `extent_mm` says what it spans."""
         shown = slab(snapshot)
         dim = snapshot.x.shape[1]
@@ -148,7 +150,7 @@ class FramePainter:
         return [f"{name:<10}{number:>9} {unit}" for name, number, unit in rows]
 
 
-def slab(snapshot: Snapshot) -> np.ndarray | slice:
+def slab(snapshot: Snapshot | Pattern) -> np.ndarray | slice:
     """Which particles a frame shows: all in 2D; in 3D those within one spacing of the mid-plane in z.
 
     They are chosen where they were seeded, so that all frames show the same ones.

@@ -30,7 +30,7 @@ class Wording:
     legend: tuple[tuple[str, tuple[int, int, int]], ...]
     ticks: tuple[tuple[float, str], ...] = ()
     inset_x: str = "axial strain [%]"
-    inset_y: str = "axial stress [MPa]"
+    inset_y: str = "total axial stress [MPa]"
 
 
 def draw_chrome(

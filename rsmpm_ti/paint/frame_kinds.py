@@ -31,8 +31,8 @@ def stress_look(limit: float, title: str | None, convention: str, inset: dict[st
     """Largest principal stress up to a limit [Pa] of either sign."""
     palette = stress_palette(limit)
     wording = Wording(
-        title=title or "Maximum principal stress $\\sigma_1$",
-        bar=f"$\\sigma_1$ [MPa]   ({convention})",
+        title=title or "Maximum principal stress $\\sigma_1$, total",
+        bar=f"total $\\sigma_1$ [MPa]   ({convention})",
         legend=(*_failed(palette), ("void", palette.void)),
         **inset,
     )
@@ -81,8 +81,8 @@ def cracking(snapshot: Snapshot) -> np.ndarray:
 
 
 def signed_load(snapshot: Snapshot) -> np.ndarray:
-    """1 - margin, [n]; negative where shear governs."""
-    return _side(snapshot) * (1.0 - snapshot.margin)
+    """1 - margin, [n]; negative where shear governs; 0 in rock that does not break."""
+    return _side(snapshot) * np.nan_to_num(1.0 - snapshot.margin)
 
 
 def _side(snapshot: Snapshot) -> np.ndarray:

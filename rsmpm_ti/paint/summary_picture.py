@@ -1,6 +1,7 @@
-"""The one picture of a finished run: load curve and failures on the left, the last crack pattern on the right."""
+"""The one picture of a finished run: load curve, failures, and the crack patterns at the largest load and the end."""
 
 import os
+import textwrap
 from collections.abc import Sequence
 from pathlib import Path
 
@@ -14,14 +15,21 @@ from rsmpm_ti.paint.figure import FramePainter, load_curve
 from rsmpm_ti.paint.frame_axes import DPI, MEGA, MILLI, Wording
 from rsmpm_ti.paint.palette import crack_palette
 from rsmpm_ti.paint.png import write_png
+from rsmpm_ti.paint.words import drawable
 from rsmpm_ti.records.history_table import PEAK_DROP
-from rsmpm_ti.records.snapshot import Snapshot
+from rsmpm_ti.records.snapshot import Pattern, Snapshot
 
 LABELLED, MIN_FRACTION = 8, 0.06
 """At most so many cracks get their lengths written, and only those longer than this fraction of the panel's height: a
 label on each splinter would hide the pattern."""
 
 NONE = np.zeros(0)
+
+WIDTHS = (1600, 2100)
+"""Of the picture with one pattern and with two [px]."""
+
+TITLE_LINE = 100
+"""Characters of a title in one line."""
 
 
 def summary_picture(
@@ -30,24 +38,33 @@ def summary_picture(
     history: np.ndarray,
     painter: FramePainter,
     title: str = "",
-    paths: Sequence[np.ndarray] = (),
+    lines: Sequence[np.ndarray] = (),
     acoustic: np.ndarray = NONE,
+    peak: Pattern | None = None,
+    peak_lines: Sequence[np.ndarray] = (),
 ) -> Path:
-    """Writes a picture of 1600 x 900 pixels from the whole history and the last snapshot; returns its path.
+    """Writes a picture, 900 pixels high, from the whole history and the last snapshot; returns its path.
 
-    `painter` is the run's painter of crack frames. Where no strain was recorded, counts are drawn over time. paths:
-    lines of cracks, each [k, 2] [m], drawn over the pattern, the longest with their lengths; acoustic: times of
-    acoustic events, ascending [s], drawn as their number so far.
+    `painter` is the run's painter of crack frames. Where no strain was recorded, counts are drawn over time. lines: of
+    cracks, each [k, 2] [m], drawn over the pattern, the longest with their lengths; acoustic: times of acoustic events,
+    ascending [s], drawn as their number so far; peak: the pattern at the largest load, drawn beside the last one where
+    it is another, with its own lines.
     """
-    figure = Figure(figsize=(1600 / DPI, 900 / DPI), dpi=DPI, facecolor="white", layout="constrained")
+    patterns = [(snapshot, lines, "Cracks at the end")]
+    if peak is not None and peak.time < snapshot.time:
+        patterns.insert(0, (peak, peak_lines, "Cracks at the largest load"))
+    elif peak is not None:
+        patterns = [(snapshot, lines, "Cracks at the end (largest load)")]
+    figure = Figure(figsize=(WIDTHS[len(patterns) - 1] / DPI, 900 / DPI), dpi=DPI, facecolor="white")
+    figure.set_layout_engine("constrained", w_pad=0.15, h_pad=0.15)
     FigureCanvasAgg(figure)
-    figure.get_layout_engine().set(w_pad=0.15, h_pad=0.15)
-    curve, cracks = figure.subplots(1, 2, width_ratios=(1.5, 1.0))
+    curve, *panels = figure.subplots(1, 1 + len(patterns), width_ratios=(1.5, *(1.0 for _ in patterns)))
     if title:
-        figure.suptitle(title, fontsize=17, fontweight="bold")
+        figure.suptitle(textwrap.fill(drawable(title), TITLE_LINE), fontsize=17, fontweight="bold")
     _curve(curve, history, painter.wording, acoustic)
-    _cracks(cracks, painter, snapshot)
-    _paths(cracks, paths)
+    for axes, (pattern, of_it, name) in zip(panels, patterns, strict=True):
+        _cracks(axes, painter, pattern, f"{name}, {pattern.time * 1e3:.3f} ms")
+        _lines(axes, of_it)
     legend = painter.wording.legend
     patches = [Patch(facecolor=np.array(c) / 255.0, edgecolor="#333333", label=name) for name, c in legend]
     figure.legend(handles=patches, fontsize=12, loc="outside lower right", ncols=len(legend), frameon=False)
@@ -65,7 +82,7 @@ def _curve(axes, history: np.ndarray, wording: Wording, acoustic: np.ndarray) ->
     loaded = np.isfinite(strain * load)
     if loaded.any():
         across = strain * 100.0
-        peak = int(np.nanargmax(load))
+        peak = int(np.nanargmax(np.abs(load)))  # a test in tension has one too
         handles += axes.plot(across, load * MEGA, color="#333333", linewidth=2.0, label=wording.inset_y)
         axes.plot(across[peak], load[peak] * MEGA, "o", color="#333333")
         fallen = np.nanmin(load[peak:]) < (1.0 - PEAK_DROP) * load[peak]
@@ -74,7 +91,7 @@ def _curve(axes, history: np.ndarray, wording: Wording, acoustic: np.ndarray) ->
         axes.set_xlabel(wording.inset_x, fontsize=14)
         axes.set_ylabel(f"{wording.inset_y}   (compression positive)", fontsize=14)
         axes.set_xlim(left=min(0.0, float(np.nanmin(across))))
-        axes.set_ylim(bottom=min(0.0, float(np.nanmin(load)) * MEGA))
+        axes.set_ylim(bottom=min(0.0, 1.05 * float(np.nanmin(load)) * MEGA))
         counts = axes.twinx()
         counts.tick_params(labelsize=12)
     counts.set_ylabel("failed particles, acoustic events" if len(acoustic) else "failed particles", fontsize=14)
@@ -90,15 +107,15 @@ def _curve(axes, history: np.ndarray, wording: Wording, acoustic: np.ndarray) ->
     axes.legend(handles=handles, fontsize=13, loc="upper left", frameon=True)
 
 
-def _cracks(axes, painter: FramePainter, snapshot: Snapshot) -> None:
-    axes.imshow(painter.panel(snapshot), extent=painter.extent_mm, interpolation="antialiased")
-    axes.set_title(f"Crack pattern at {snapshot.time * 1e3:.3f} ms", fontsize=14, loc="left")
+def _cracks(axes, painter: FramePainter, pattern: Snapshot | Pattern, title: str) -> None:
+    axes.imshow(painter.panel(pattern), extent=painter.extent_mm, interpolation="antialiased")
+    axes.set_title(title, fontsize=14, loc="left")
     axes.set_xlabel("x  [mm]", fontsize=14)
     axes.set_ylabel("y  [mm]", fontsize=14)
     axes.tick_params(labelsize=12)
 
 
-def _paths(axes, paths: Sequence[np.ndarray]) -> None:
+def _lines(axes, paths: Sequence[np.ndarray]) -> None:
     """Lines of cracks on the pattern, and the lengths of the longest [mm] beside their middles."""
     left, right, bottom, top = axes.get_images()[0].get_extent()
     lengths = [float(np.linalg.norm(np.diff(path, axis=0), axis=1).sum()) * MILLI for path in paths]

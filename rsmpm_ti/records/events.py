@@ -1,6 +1,6 @@
 """The failure events of a run."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -13,6 +13,7 @@ class EventTable:
     """Failure events in the order of time. Shapes [e], x [e, dim]; SI; mode 1 tension, 2 shear.
 
     normal: unit vector across the particle's crack, [e, dim]; None for rock whose cracks have no direction.
+    time_scale: of the run's mass scaling.
     """
 
     time: np.ndarray
@@ -23,6 +24,7 @@ class EventTable:
     released: np.ndarray
     id: np.ndarray
     normal: np.ndarray | None = None
+    time_scale: float = 1.0
     onset: float = np.inf
     """When a particle of rock with a direction first began to lose strength [s]: not after the first event."""
 
@@ -33,6 +35,18 @@ class EventTable:
             return None
         return np.arctan2(self.normal[:, 1].astype(float), self.normal[:, 0].astype(float))
 
+    @property
+    def true_time(self) -> np.ndarray:
+        """Times in the rock of true density, loaded so many times faster [s]; see docs/conventions.md."""
+        return self.time / self.time_scale
+
+    def until(self, time: float) -> "EventTable":
+        """The events up to a time [s], that time included."""
+        n = int(np.searchsorted(self.time, time, side="right"))
+        columns = ("time", "x", "mode", "sigma_1", "sigma_3", "released", "id")
+        cut = {name: getattr(self, name)[:n] for name in columns}
+        return replace(self, **cut, normal=None if self.normal is None else self.normal[:n])
+
     def __len__(self) -> int:
         return len(self.time)
 
@@ -42,6 +56,10 @@ EVENTS = Table(
     about="Failures of particles in the order of time; of rock that softens, when half of the strength is lost.",
     columns=(
         Column(name="time_s", unit="s", about="when it failed", value=lambda events: events.time),
+        Column(
+            name="true_time_s", unit="s", about="the same without mass scaling: time_s / time_scale",
+            value=lambda events: events.true_time,
+        ),
         Column(name="{axis}_m", unit="m", about="where the particle was", value=lambda events: events.x),
         Column(
             name="mode", unit="", about="tension or shear", value=lambda events: [MODE_NAMES[m] for m in events.mode]

@@ -26,9 +26,16 @@ def complete(path: str | os.PathLike):
         part.unlink(missing_ok=True)
 
 
+LARGEST = 1e300
+"""No quantity is as large: it is what a minimum over nothing leaves, where several threads take it."""
+
+
 def known(value):
-    """The value; None for a number that is not finite. An empty cell of a CSV and null of JSON mean: not defined."""
-    return None if isinstance(value, float | np.floating) and not np.isfinite(value) else value
+    """The value; None for a number that is not finite, or as large as a minimum over nothing: it is not defined.
+
+    The one place that decides: an empty cell of a CSV and null of JSON are made of None.
+    """
+    return None if isinstance(value, float | np.floating) and not abs(value) < LARGEST else value
 
 
 def cell(value) -> str:

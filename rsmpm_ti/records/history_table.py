@@ -14,11 +14,27 @@ HISTORY = Table(
         "from the confined state. Gauges of the scene and columns of your own follow."
     ),
     columns=(
-        Column(name="time_s", unit="s", about="time", value=lambda view: view.time),
+        Column(name="time_s", unit="s", about="time of the run, that of the platens", value=lambda view: view.time),
+        Column(
+            name="true_time_s", unit="s", about="time without mass scaling, that of waves and of running cracks: "
+            "time_s / time_scale",
+            value=lambda view: view.true_time,
+        ),
         Column(
             name="axial_strain", unit="1", about="nominal strain: how far the platens have closed in, over their "
             "distance; compression positive",
             value=lambda view: view.strain,
+        ),
+        Column(
+            name="lateral_strain", unit="1", about="across the load: how far the sides have closed in, over their "
+            "distance; compression positive, so negative while the specimen bulges. By least squares from intact rock "
+            "of both sides, over the middle half of the height; in 3D the mean of both directions",
+            value=lambda view: view.lateral_strain,
+        ),
+        Column(
+            name="volumetric_strain", unit="1", about="axial_strain and the lateral strains, added; compression "
+            "positive. In 2D that of plane strain; not defined in plane stress",
+            value=lambda view: view.volumetric_strain,
         ),
         Column(
             name="stress_top_Pa", unit="Pa", about="nominal stress at the upper side of the load cell: force over "
@@ -30,8 +46,14 @@ HISTORY = Table(
             value=lambda view: view.load.stress_lower,
         ),
         Column(
-            name="energy_kinetic_J", unit="J", about="kinetic energy, mass scaling included",
+            name="energy_kinetic_J", unit="J", about="kinetic energy, mass scaling included, that of waves and of "
+            "running cracks",
             value=lambda view: view.survey.kinetic,
+        ),
+        Column(
+            name="energy_kinetic_true_density_J", unit="J", about="the same with the rock's own density, that of the "
+            "motion at the platens' speed: energy_kinetic_J / time_scale^2",
+            value=lambda view: view.survey.kinetic / view.scene.time_scale**2,
         ),
         Column(
             name="energy_elastic_J", unit="J", about="elastic energy stored", value=lambda view: view.survey.elastic

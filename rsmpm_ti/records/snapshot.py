@@ -33,15 +33,30 @@ class Snapshot:
     failure_mode: np.ndarray  # INTACT, TENSION or SHEAR, int8 [n]
     failure_time: np.ndarray  # [s], NaN where intact, [n]
     # how near to failure: 1 unloaded, or pressed from all sides; 0 at failure, and where failed or begun to crack;
-    # below 0 where the mean stress exceeds the strength and a particle nearby, which exceeds it more, fails first; [n]
+    # below 0 where the mean stress exceeds the strength and a particle nearby, which exceeds it more, fails first; NaN
+    # in rock that does not break; [n]
     margin: np.ndarray
     governs: np.ndarray  # which failure the margin is to, or which it was: TENSION, SHEAR, or 0 for none, int8 [n]
     damage: np.ndarray  # fraction of strength lost, 0 to 1, by the paper's laws 1 where failed, [n]
-    aperture: np.ndarray  # opening of the crack in the particle [m], 0 by the paper's laws, [n]
+    aperture: np.ndarray  # opening of the crack in the particle [m], NaN by the paper's laws, which know none, [n]
     # of the normal of the crack in the particle, from +x [degrees, 0 to 180), NaN where it has none and by the paper's
     # laws; where it failed in shear, of sigma_1 then; [n]
     crack_angle: np.ndarray
     history: dict[str, np.ndarray] = field(default_factory=dict)  # what the law after failure remembers, by name
+
+
+@dataclass(frozen=True)
+class Pattern:
+    """What of a Snapshot a picture of cracks needs, by the same names: it is copied at every new largest load."""
+
+    time: float
+    id: np.ndarray
+    x: np.ndarray
+    displacement: np.ndarray
+    volume: np.ndarray
+    failure_mode: np.ndarray
+    governs: np.ndarray
+    damage: np.ndarray
 
 
 PARTICLES = Table(
@@ -54,8 +69,12 @@ PARTICLES = Table(
         "stands here already)."
     ),
     columns=(
+        Column(name="id", unit="1", about="number of the particle, the same in every file", value=lambda s: s.id),
         Column(name="displacement", unit="m", about="since the start, 3 components", value=lambda s: s.displacement),
-        Column(name="velocity", unit="m/s", about="3 components", value=lambda s: s.velocity),
+        Column(
+            name="velocity", unit="m/s", about="of the run, 3 components; times time_scale without mass scaling",
+            value=lambda s: s.velocity,
+        ),
         Column(
             name="stress", unit="Pa", about="Cauchy stress, tension positive, 9 components xx xy xz yx yy yz zx zy zz",
             value=lambda s: s.sigma,
@@ -74,7 +93,7 @@ PARTICLES = Table(
         ),
         Column(
             name="margin", unit="1", about="how near to failure: 1 unloaded or pressed from all sides, 0 at failure "
-            "and where failed",
+            "and where failed; NaN in rock that does not break",
             value=lambda s: s.margin,
         ),
         Column(
@@ -84,8 +103,32 @@ PARTICLES = Table(
         ),
         Column(name="damage", unit="1", about="fraction of the strength lost, 0 to 1", value=lambda s: s.damage),
         Column(
-            name="aperture_m", unit="m", about="opening of the crack in the particle; 0 by the paper's laws",
+            name="aperture_m", unit="m", about="opening of the crack in the particle; NaN by the paper's laws, "
+            "which know none",
             value=lambda s: s.aperture,
+        ),
+    ),
+)  # fmt: skip
+
+INSTANT = Table(
+    file="field data of particles_0000.vtu, ...",
+    about=(
+        "Numbers of the whole specimen at the time of a VTU file, in ParaView's Information panel; what is not defined "
+        "is left out. The names of the failure modes stand beside them with their codes: `failure_mode_tension` is 1."
+    ),
+    columns=(
+        Column(name="time_s", unit="s", about="time of the run, that of the platens", value=lambda view: view.time),
+        Column(
+            name="true_time_s", unit="s", about="time without mass scaling: time_s / time_scale",
+            value=lambda view: view.true_time,
+        ),
+        Column(
+            name="axial_strain", unit="1", about="nominal strain, compression positive", value=lambda view: view.strain
+        ),
+        Column(
+            name="nominal_stress_Pa", unit="Pa", about="mean of both sides of the load cell since the history row "
+            "before, confining pressure included; compression positive",
+            value=lambda view: view.load.stress,
         ),
     ),
 )  # fmt: skip

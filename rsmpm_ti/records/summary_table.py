@@ -32,12 +32,9 @@ SUMMARY = Table(
         _key("first_failure_stress_Pa", "Pa", "nominal stress at first failure, extrapolated from the rows before it"),
         _key("first_failure_strain", "1", "nominal strain then"),
         _key("first_failure_time_s", "s", "time of first failure"),
+        _key("first_failure_true_time_s", "s", "the same without mass scaling: over time_scale"),
         _key("first_failure_mode", "", "tension or shear"),
         _key("first_failure_position_m", "m", "where it was, a list of coordinates"),
-        _key(
-            "initiation_angles_deg", "degree", "angles at which the two wings leave the flaw, from its continuation; "
-            "null for a wing that is not there" + FLAWED,
-        ),
         _key(
             "first_crack_angles_deg", "degree", "of the first cracks at the two tips; for rock whose cracks have a "
             "direction" + FLAWED,
@@ -73,6 +70,10 @@ SUMMARY = Table(
         _key("acoustic_events", "1", "rows of acoustic.csv"),
         _key("b_value", "1", "slope of log10 N(magnitude); null for too few events"),
         _key("b_value_error", "1", "its standard error"),
+        _key(
+            "initiation_angles_deg", "degree", "`initiation[].angle_deg` of both tips of the flaw; empty but for 2D "
+            "scenes of one flaw",
+        ),
         _key("initiation", "", "list: the first failure near each flaw tip that became part of a crack, as follows"),
         _key("initiation[].flaw", "1", "number of the flaw, from 0"),
         _key("initiation[].tip", "", "number of the flaw and + or -"),
@@ -80,8 +81,15 @@ SUMMARY = Table(
         _key("initiation[].stress_Pa", "Pa", "nominal stress then; null where nothing grew, as all that follows"),
         _key("initiation[].strain", "1", "nominal strain then"),
         _key("initiation[].time_s", "s", "its time"),
+        _key("initiation[].true_time_s", "s", "the same without mass scaling: over time_scale"),
         _key("initiation[].position_m", "m", "where it was"),
-        _key("initiation[].angle_deg", "degree", "between the flaw's continuation and the crack"),
+        _key(
+            "initiation[].angle_deg", "degree", "between the flaw's continuation and the crack where it leaves. In "
+            "rock whose cracks have a direction: the median direction of its first failures in tension, at most 20, "
+            "within 3 mm of the flaw's end (and half its width). In other rock, and of a crack that begins in shear: "
+            "the line through its failures of one mode within 3 mm of the first, before it is 6 mm long. Null for "
+            "fewer than 6",
+        ),
         _key("initiation[].mode", "", "tension or shear"),
         _key("initiation[].crack", "1", "number of the crack in cracks.csv"),
         _key("numerical_fracture", "", "a warning that intact particles have parted; null where they have not"),

@@ -51,14 +51,21 @@ class Directional(AfterFailure):
     softening: Annotated[Brittle | LinearSoftening | ExponentialSoftening, ByType] = Brittle()
 
     history = (
-        Variable(name="crack_normal", unit="1", per_axis=True, about="unit normal of the crack; turns with the rock"),
+        Variable(
+            name="crack_normal",
+            unit="1",
+            per_axis=True,
+            about="unit normal of the crack, 0 where there is none; turns with the rock",
+        ),
         Variable(
             name="crack_strain", unit="1", per_axis=True, about="strain by opening, across the crack and along it"
         ),
         Variable(name="crack_strain_max", unit="1", per_axis=True, about="the largest crack strains so far"),
         Variable(name="slip", unit="1", about="shear strain by slip, summed"),
         Variable(name="dissipated", unit="J/m^3", about="energy dissipated so far, per stress-free volume"),
-        Variable(name="failed", unit="1", whole=True, about="mode by which it opened or slipped by half its strength"),
+        Variable(
+            name="failed", unit="1", whole=True, about="mode by which it opened or slipped by half its strength, 0 none"
+        ),
     )
     dimensions = (2,)
     oriented = True

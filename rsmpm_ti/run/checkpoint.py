@@ -13,7 +13,7 @@ from typing import Any
 
 import numpy as np
 
-from rsmpm_ti.errors import ObserverError, SceneError
+from rsmpm_ti.errors import ObserverError, SceneError, refuse
 from rsmpm_ti.output.files import CHECKPOINTS
 from rsmpm_ti.solver.observer import Observer, Watch
 from rsmpm_ti.solver.outflow import Dropped
@@ -38,6 +38,21 @@ class Checkpoint(Observer):
             self._written = time.perf_counter()
 
 
+MAY_CHANGE = {"schedule": ("strain_end", "t_end", "rows"), "loading": ("time_scale",)}
+"""Fields of a scene that a run which goes on may have otherwise, beside all of its output: where it ends and how often
+it is looked at. The time scale is compared as a number: 'auto' asks where the run ends."""
+
+
+def held(identity: dict) -> dict:
+    """What a run that goes on must share with the one that wrote a checkpoint."""
+    scene = dict(identity.get("scene", {}))
+    scene.pop("output", None)
+    for part, names in MAY_CHANGE.items():
+        if part in scene:
+            scene[part] = {name: value for name, value in scene[part].items() if name not in names}
+    return identity | {"scene": scene}
+
+
 def take(drive, history, progress: dict, identity: dict) -> dict[str, np.ndarray]:
     """Arrays of a checkpoint. progress: numbers of the run's loop; identity: what a run that goes on must share."""
     sim = drive.sim
@@ -50,6 +65,7 @@ def take(drive, history, progress: dict, identity: dict) -> dict[str, np.ndarray
     arrays |= sim.grid.state() | sim.contacts.state() | history.state()
     arrays |= {f"dropped_{name}": np.array(value) for name, value in vars(drive.dropped).items()}
     arrays |= {f"clock_{name}": np.array(value) for name, value in drive.clock.state().items()}
+    arrays["end"] = np.array(drive.clock.end)
     arrays["text"] = np.array(json.dumps({"progress": progress, "identity": identity}))
     return arrays
 
@@ -74,7 +90,13 @@ def restore(arrays: dict[str, np.ndarray], drive, history) -> dict:
     sim.events.by_mode.from_numpy(arrays["event_by_mode"])
     for part in (sim.grid, sim.contacts, history):
         part.resume(arrays)
+    planned = drive.clock.total
     drive.clock.resume({name: arrays[f"clock_{name}"] for name in drive.clock.state()})
+    if float(arrays["end"]) != drive.clock.end:
+        if sim.scene.schedule.adaptive:
+            drive.clock.retime(drive.clock.dt)
+        else:
+            drive.clock.total = planned
     drive.dropped = Dropped(
         count=int(arrays["dropped_count"]), momentum=arrays["dropped_momentum"],
         **{name: float(arrays[f"dropped_{name}"]) for name in ("mass", "energy")},
@@ -111,11 +133,18 @@ def observer_arrays(watches: list[Watch]) -> tuple[list[dict], dict[str, np.ndar
     return parts, arrays
 
 
-def restore_observers(watches: list[Watch], parts: list[dict], arrays: dict[str, np.ndarray]) -> None:
-    """The way back of `observer_arrays`, into observers of the same kinds in the same order."""
+def restore_observers(
+    watches: list[Watch], parts: list[dict], arrays: dict[str, np.ndarray], fraction: float | None = None
+) -> None:
+    """The way back of `observer_arrays`, into observers of the same kinds in the same order.
+
+    fraction: of the run that is done, where its end or its output is another now; None where it is not.
+    """
     for k, (watch, part) in enumerate(zip(watches, parts, strict=True)):
         kept = {name: arrays[f"observer_{k}_{name}"] for name in part["arrays"]}
         watch.resume({"next": part["next"], "own": part["own"] | kept})
+        if fraction is not None:
+            watch.realign(fraction)
 
 
 def particle_arrays(sim) -> dict[str, np.ndarray]:
@@ -138,7 +167,7 @@ def read(out: Path, identity: dict) -> dict[str, np.ndarray] | None:
     """The latest checkpoint in a run's folder that can be read whole; None where there is none at all.
 
     Raises SceneError where it belongs to another scene, version or precision, naming the difference, and where there
-    are only damaged ones.
+    are only damaged ones. The end of the run, its rows and its output may differ.
     """
     damaged = ""
     for name in CHECKPOINTS:
@@ -152,16 +181,30 @@ def read(out: Path, identity: dict) -> dict[str, np.ndarray] | None:
         except (OSError, ValueError, KeyError, EOFError, zipfile.BadZipFile, NotImplementedError) as error:
             damaged = f"{path} is damaged ({' '.join(str(error).split())})"
             continue
-        where = difference(kept, json.loads(json.dumps(identity)))
+        where = difference(held(kept), held(json.loads(json.dumps(identity))))
         if where:
             raise SceneError(
-                f"{path} is of another run and is refused: {where}; resume with the options of that run, or start anew "
-                f"without --resume"
+                f"{path} is of another run and is refused: {where}; resume with the options of that run (its end, rows "
+                f"and output may differ), or start anew without --resume"
             )
         return arrays
     if damaged:
         raise SceneError(f"{damaged} and there is no other; start anew without --resume")
     return None
+
+
+def changed(arrays: dict[str, np.ndarray], identity: dict) -> bool:
+    """Whether a run that goes on from a checkpoint has another end, other rows or other output than it had."""
+    return bool(difference(json.loads(str(arrays["text"]))["identity"], json.loads(json.dumps(identity))))
+
+
+def check_end(arrays: dict[str, np.ndarray], scene) -> None:
+    """Refuse a run that would end before the checkpoint from which it is to go on."""
+    reached = float(arrays["clock_since"] + (arrays["clock_step"] - arrays["clock_first"]) * arrays["clock_dt"])
+    if scene.t_end < reached - float(arrays["clock_dt"]):  # an end is rounded up to whole steps
+        name = "t_end" if scene.schedule.strain_end is None else "strain_end"
+        allowed = f"such that the run ends after t = {reached:.6g} s, to where the checkpoint has come"
+        raise refuse(f"schedule.{name}", getattr(scene.schedule, name), allowed, "start anew without --resume")
 
 
 def difference(there, here, where: str = "") -> str:

@@ -2,13 +2,13 @@
 
 import time
 
-from rsmpm_ti.analysis.fracture import Fracture, measure_fracture
+from rsmpm_ti.analysis.fracture import Fracture, crack_lines, measure_fracture
 from rsmpm_ti.analysis.summary import summarise
 from rsmpm_ti.errors import ObserverError, SceneError
 from rsmpm_ti.output.files import write_events, write_history
 from rsmpm_ti.output.folder import write_all
 from rsmpm_ti.output.fracture_tables import write_fracture
-from rsmpm_ti.records.files import write_json
+from rsmpm_ti.records.files import plain, write_json
 from rsmpm_ti.records.result import Result
 from rsmpm_ti.run.warnings import kinetic_share_after, warnings_of
 from rsmpm_ti.solver.damping import damping_said, viscous_energy
@@ -21,7 +21,7 @@ def finish(run, stopped: str, failure: Exception | None) -> Result:
     summary = {}
 
     def sum_up() -> None:  # last, since it counts the time of everything else
-        summary.update(numbers_of(run, view, fracture, speed, stopped))
+        summary.update(plain(numbers_of(run, view, fracture, speed, stopped)))  # the same in Python as in the file
 
     if run.out is None:
         sum_up()
@@ -58,7 +58,9 @@ def _writes(run, view, fracture: Fracture, failure: Exception | None) -> list:
     if failure is None or of_user:  # else the last one is of a sound state, or nothing more can be written
         writes.append(checkpoint)
     if of_user or not isinstance(failure, SceneError):
-        last = view.snapshot, view.history, fracture.paths, fracture.acoustic.time
+        peak = run.largest.pattern
+        lines = [] if peak is None else crack_lines(run.scene, view.events, peak)
+        last = view.snapshot, view.history, fracture.lines, fracture.acoustic.time, peak, lines
         writes.append(lambda: timed(run.writer.close, *last))
     return writes
 

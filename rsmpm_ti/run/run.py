@@ -39,10 +39,11 @@ def simulate(
 
     precision: 'f64' or 'f32'; arch: 'cpu' or 'cuda'; threads: CPU threads, all by default; deterministic: the same
     bits whatever the number of threads, on one kind of machine; resume: go on from the checkpoint in `out`, from the
-    start where there is none; checkpoint_every: wall time between checkpoints [s]; progress: called after each history
-    row; columns: more columns of the history (`Column`); observers: more observers (`Observer`), whose states a
-    checkpoint keeps, to be given again, in the same order, to a run that resumes. Ctrl-C and SIGTERM stop after the
-    step and still write what there is. A specimen that bursts after its peak ends the run, which is then a result.
+    start where there is none, of a run that was stopped or done: its end, rows and output may be others now, nothing
+    else; checkpoint_every: wall time between checkpoints [s]; progress: called after each history row; columns: more
+    columns of the history (`Column`); observers: more observers (`Observer`), whose states a checkpoint keeps, to be
+    given again, in the same order, to a run that resumes. Ctrl-C and SIGTERM stop after the step and still write what
+    there is. A specimen that bursts after its peak ends the run, which is then a result.
     What is hard to believe in the scene comes as RockWarning, a sentence each, before it starts.
     Raises SceneError for input that cannot be run, before anything compiles, and when files cannot be written any
     more, and after writing everything up to there UnstableRun, or ObserverError where a column or observer raised.
@@ -61,9 +62,11 @@ def simulate(
     if out is None:
         return Run(scene, seeds, None, settings, said=said).go()
     if resume:
-        from rsmpm_ti.run.checkpoint import read
+        from rsmpm_ti.run.checkpoint import check_end, read
 
         kept = read(Path(out), settings.identity(scene))
+        if kept is not None:
+            check_end(kept, scene)
     return Run(scene, seeds, prepare(scene, out, keep=kept is not None), settings, kept, said).go()
 
 
@@ -97,7 +100,7 @@ class Run:
             raise
 
     def _set_up(self, seeds, kept) -> None:
-        from rsmpm_ti.run.checkpoint import restore, restore_observers
+        from rsmpm_ti.run.checkpoint import changed, restore, restore_observers
         from rsmpm_ti.solver.advance import Drive
         from rsmpm_ti.solver.history import History
 
@@ -114,7 +117,9 @@ class Run:
             progress = restore(kept, self.drive, self.history)
             self.load.see_all(self.history.table())
             self.ending = self._fallen(self.view())
-            restore_observers(self.watches, progress["observers"], kept)
+            another = changed(kept, self.settings.identity(self.scene))
+            fraction = self.clock.fraction if another else None
+            restore_observers(self.watches, progress["observers"], kept, fraction)
             self.wall_before = progress["wall_s"]
 
     def _observers(self) -> list:
@@ -125,11 +130,14 @@ class Run:
         own: list = []
         last: list = []
         if self.writer is not None:
-            from rsmpm_ti.output.observers import Frames, ParticleFiles
+            from rsmpm_ti.output.observers import Frames, LargestLoad, ParticleFiles
 
-            wanted = self.scene.output
-            own.append(Frames(self.writer, wanted.frames, self.sim.particles.count))
-            own += [ParticleFiles(self.writer, wanted.vtu)] if wanted.vtu else []
+            wanted, self.largest = self.scene.output, LargestLoad()
+            self.files = (
+                Frames(self.writer, wanted.frames, self.sim.particles.count),
+                ParticleFiles(self.writer, wanted.vtu),
+            )
+            own += [self.largest, *self.files]
             last.append(Checkpoint(self.settings.checkpoint_every, self.write_checkpoint))
         users = [Watch(observer) for observer in self.settings.observers]
         return [*(Watch(o, own=True) for o in own), *users, *(Watch(o, own=True) for o in last)]
@@ -174,6 +182,9 @@ class Run:
             self.drive.advance(1)
         elif not self.over:
             self._row()
+        elif self.writer is not None:
+            for files in self.files:
+                files.catch_up(self.view())
         ti.sync()
         self.started, self.painting_s, self.steps_before = time.perf_counter(), 0.0, self.clock.step
 

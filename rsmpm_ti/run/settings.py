@@ -62,7 +62,7 @@ class Settings:
         shared = {"precision": self.precision, "arch": self.arch, "deterministic": self.deterministic}
         shared["columns"] = [column.name for column in self.columns]
         shared["observers"] = [type(observer).__name__ for observer in self.observers]
-        return {"rsmpm_ti": __version__, **shared, "scene": to_plain(scene)}
+        return {"rsmpm_ti": __version__, **shared, "time_scale": scene.time_scale, "scene": to_plain(scene)}
 
 
 def check_columns(scene: Scene, columns) -> None:

@@ -2,10 +2,11 @@
 
 from rsmpm_ti.rock.rock import Rock
 from rsmpm_ti.spec.boundaries import Platen
+from rsmpm_ti.spec.domain import Domain
 from rsmpm_ti.spec.load_cell import LoadCell
 from rsmpm_ti.spec.loading_start import Affine
 from rsmpm_ti.spec.regions import Box, Difference, Slit
-from rsmpm_ti.spec.scene import Body, Domain, Loading, Output, Scene, Schedule
+from rsmpm_ti.spec.scene import Body, Loading, Output, Scene, Schedule
 from rsmpm_ti.spec.seeding import Jittered, Lattice
 
 

@@ -4,6 +4,7 @@ import math
 
 import numpy as np
 
+from rsmpm_ti.errors import UnstableRun
 from rsmpm_ti.fields.cell_order import first_rows, sort_particles
 from rsmpm_ti.fields.state import Simulation
 from rsmpm_ti.method.time_step import adapted
@@ -77,6 +78,8 @@ class Drive:
         self.survey = survey(self.sim)
         if self.survey.outside and not self.survey.sick:
             self.survey, self.dropped = drop(self.sim, self.survey, self.dropped)
+            if self.dropped.count == self.sim.particles.count:
+                raise UnstableRun("every particle has left the domain; enlarge it, or end the run earlier")
         guard(self.sim, self.clock, self.survey)
         # slabs bear a stray of one row: half a cell beyond it and SAFE_CELLS more is still less than that
         if self.survey.far_strays or self.survey.strays > STRAY_FRACTION * self.sim.particles.count:

@@ -9,6 +9,7 @@ from rsmpm_ti.fields.state import Simulation
 from rsmpm_ti.mpm.clock import Clock
 from rsmpm_ti.records.history_table import HISTORY
 from rsmpm_ti.records.tables import Column
+from rsmpm_ti.solver.extensometer import Extensometer
 from rsmpm_ti.solver.gauges import gauge_columns
 from rsmpm_ti.solver.guard import EnergyBooks, guard_energy, quiet_energy
 from rsmpm_ti.solver.survey import Survey
@@ -30,7 +31,7 @@ class History:
         self._table = None
         self.books = EnergyBooks(start=start.kinetic + start.elastic, quiet=quiet_energy(sim)).after(start)
         self._impulse, self._time = start.impulse, clock.time
-        self._cell = sim.scene.loading.load_cell
+        self._cell, self.extensometer = sim.scene.loading.load_cell, Extensometer(sim)
         self.load = NO_LOAD
 
     @property

@@ -27,6 +27,9 @@ class Observer:
     def resume(self, state: dict) -> None:
         """Go on where an observer with this `state()` was."""
 
+    def realign(self, fraction: float) -> None:
+        """After `resume`, in a run whose end or output is another than before; fraction: of it that is done."""
+
 
 class Watch:
     """An observer and the next look that is due. own: of this package, whose errors say what they mean already."""
@@ -50,6 +53,13 @@ class Watch:
         if every == 0.0 or view.fraction >= self._next * every - 1e-9:
             self._ask(self.observer.see, view)
             self._next = math.floor(view.fraction / every + 1e-9) + 1 if every else 0
+
+    def realign(self, fraction: float) -> None:
+        """The run has another end, or output, than before it was resumed: what is due next counts from where it is."""
+        every = self.observer.every
+        self._next = math.floor(fraction / every + 1e-9) + 1 if every else 0
+        if self.own:
+            self.observer.realign(fraction)
 
     def state(self) -> dict:
         own = self._ask(self.observer.state)

@@ -8,11 +8,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from rsmpm_ti.failure.failure_margin import margins
+from rsmpm_ti.failure.failure_margin import damages, margins
 from rsmpm_ti.fields.records import NEVER
 from rsmpm_ti.fields.state import Simulation
 from rsmpm_ti.records.events import EventTable
-from rsmpm_ti.records.snapshot import Snapshot
+from rsmpm_ti.records.snapshot import Pattern, Snapshot
 
 
 @dataclass(frozen=True)
@@ -65,7 +65,7 @@ class Readout:
             margin=column("margin"),
             governs=column("governs", np.int8),
             damage=column("damage"),
-            aperture=column("aperture") if "aperture" in fields else np.zeros(n),
+            aperture=column("aperture") if "aperture" in fields else np.full(n, np.nan),
             crack_angle=crack_angle,
             history=history,
         )
@@ -100,6 +100,25 @@ def read_out(sim: Simulation, time: float) -> Readout:
     )
 
 
+def read_pattern(sim: Simulation, time: float) -> Pattern:
+    """Copy what a picture of cracks needs, in the order of ids, without what was dropped."""
+    particles, failed = sim.particles, damages(sim)
+    ids, volume = particles.id.to_numpy(), particles.volume.to_numpy()
+    order = np.argsort(ids, kind="stable")
+    order = order[volume[order] != 0.0]
+    u = particles.u.to_numpy()[order].astype(np.float64)
+    return Pattern(
+        time=time,
+        id=ids[order],
+        x=particles.reference.to_numpy()[order] + u,
+        displacement=u,
+        volume=(volume * particles.J.to_numpy())[order].astype(np.float64),
+        failure_mode=failed["failure_mode"][order].astype(np.int8),
+        governs=failed["governs"][order].astype(np.int8),
+        damage=failed["damage"][order],
+    )
+
+
 def take_snapshot(sim: Simulation, time: float) -> Snapshot:
     """Copy the particles out, in the order of their ids, without those that were dropped."""
     return read_out(sim, time).snapshot()
@@ -126,4 +145,4 @@ def read_events(sim: Simulation) -> EventTable:
     order = np.lexsort((columns["id"], columns["time"]))
     columns = {name: column[order] for name, column in columns.items()}
     onset = float(sim.events.onset[None])
-    return EventTable(**columns, onset=onset if onset < NEVER else np.inf)
+    return EventTable(**columns, time_scale=sim.scene.time_scale, onset=onset if onset < NEVER else np.inf)

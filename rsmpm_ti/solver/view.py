@@ -1,15 +1,17 @@
 """One look at a run between two steps: what history columns are made of and what observers see."""
 
+import math
 from functools import cached_property
 from pathlib import Path
 
 import numpy as np
 
+from rsmpm_ti.fields.records import NEVER
 from rsmpm_ti.fields.state import Simulation
 from rsmpm_ti.mpm.clock import Clock
 from rsmpm_ti.records.events import EventTable
-from rsmpm_ti.records.snapshot import Snapshot
-from rsmpm_ti.solver.readout import Readout, read_events, read_out
+from rsmpm_ti.records.snapshot import Pattern, Snapshot
+from rsmpm_ti.solver.readout import Readout, read_events, read_out, read_pattern
 from rsmpm_ti.solver.survey import Survey
 from rsmpm_ti.spec.load_cell import Load
 from rsmpm_ti.spec.scene import Scene
@@ -27,6 +29,26 @@ class View:
         self.time, self.strain, self.step, self.dt, self.fraction = (
             clock.time, clock.strain, clock.step, clock.dt, clock.fraction
         )  # fmt: skip
+
+    @property
+    def true_time(self) -> float:
+        """Time without mass scaling [s]: that of waves and running cracks; see docs/conventions.md."""
+        return self.time / self.scene.time_scale
+
+    @cached_property
+    def lateral_strains(self) -> tuple[float, ...]:
+        """Across the load, one for each axis, compression positive; NaN where nothing is measured."""
+        return self._history.extensometer.read()
+
+    @property
+    def lateral_strain(self) -> float:
+        """The mean of them [1]."""
+        return float(np.mean(self.lateral_strains))
+
+    @property
+    def volumetric_strain(self) -> float:
+        """Axial and lateral strains, added [1], compression positive; NaN in plane stress, where one is not known."""
+        return math.nan if self.scene.rock.elasticity.plane_stress else self.strain + sum(self.lateral_strains)
 
     @property
     def scene(self) -> Scene:
@@ -53,6 +75,16 @@ class View:
     def snapshot(self) -> Snapshot:
         """All particles, as NumPy arrays in the order of their ids."""
         return self.readout.snapshot()
+
+    @cached_property
+    def pattern(self) -> Pattern:
+        """What of the snapshot a picture of cracks needs; much cheaper."""
+        return read_pattern(self.sim, self.time)
+
+    @property
+    def begun(self) -> bool:
+        """Whether a particle has begun to lose strength."""
+        return self.survey.failed_tension + self.survey.failed_shear > 0 or self.sim.events.onset[None] < NEVER
 
     @cached_property
     def events(self) -> EventTable:

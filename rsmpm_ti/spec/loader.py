@@ -7,6 +7,7 @@ import importlib.util
 import inspect
 import sys
 import traceback
+import types
 import typing
 from dataclasses import replace
 from pathlib import Path
@@ -14,9 +15,9 @@ from pathlib import Path
 from pydantic import PydanticUserError, TypeAdapter, ValidationError
 
 import rsmpm_ti
-from rsmpm_ti.checks import KNOWN, STRICT, annotations, members, phrase, remedy, unit_of, within
+from rsmpm_ti.checks import KNOWN, STRICT, annotations, members, native, phrase, remedy, unit_of, within
 from rsmpm_ti.errors import SceneError, refuse, short, shown
-from rsmpm_ti.spec.scene import Scene
+from rsmpm_ti.spec.scene import Scene, Schedule, unchecked
 from rsmpm_ti.spec.scene_json import read_scene
 from rsmpm_ti.units import quantity
 
@@ -55,31 +56,52 @@ def find(name: str) -> Path:
 
 
 def load_scene(name: str, *, quick: bool = False, settings: dict[str, object] | None = None, **overrides) -> Scene:
-    """Build a scene. `overrides` are keywords of its function; `settings` are texts as --set gives them ("55 GPa"), or
-    numbers, where a dotted name reaches a field of the built Scene, and so does a field's own name that is no keyword.
-    `quick` first takes the file's QUICK keywords.
+    """Build a scene. `overrides` are keywords of its function; `settings` are texts as --set gives them ("55 GPa"),
+    numbers or objects (`Gimp()`), where a dotted name reaches a field of the built Scene, and so does a name of one of
+    its fields, or of its schedule's (`t_end`), that is no keyword. `quick` first takes the file's QUICK keywords.
+
+    All settings are put in before their sum is checked, so their order does not matter: two platens change their
+    speeds, or `strain_end` becomes none and `t_end` a time, one after the other.
 
     A .py scene is a program and is run; a .json scene is data and is not. Raises SceneError.
     """
     path, settings = find(name), dict(settings or {})
     recorded = path.suffix == ".json"
     function, parameters, quick_keywords = (None, {}, {}) if recorded else _function(path)
-    fields = {
-        key: settings.pop(key)
-        for key in list(settings)
-        if "." in key or (key in typing.get_type_hints(Scene) and key not in parameters)
-    }
-    if recorded:
-        if settings or overrides or quick:
-            raise SceneError("a recorded scene has no keywords; use dotted names, for example schedule.cfl=0.3")
-        scene = read_scene(path)
-    else:
-        with _naming(settings):
-            scene = _call(function, path, (quick_keywords if quick else {}) | overrides, settings)
-    for key, text in fields.items():
-        with _naming({key: text}):
-            scene = _with_field(scene, Scene, key, key.split("."), text, scene.dim)
-    return scene
+    fields = _fields_of(settings, parameters)
+    with unchecked() if fields else contextlib.nullcontext():
+        if recorded:
+            if settings or overrides or quick:
+                raise SceneError("a recorded scene has no keywords; use dotted names, for example schedule.cfl=0.3")
+            scene = read_scene(path)
+        else:
+            with _naming(settings):
+                scene = _call(function, path, (quick_keywords if quick else {}) | overrides, settings)
+    if not fields:
+        return scene
+    with _naming(settings | fields):
+        return _with_fields(scene, Scene, {key: (key.split("."), value) for key, value in fields.items()}, scene.dim)
+
+
+def _fields_of(settings: dict[str, object], parameters) -> dict[str, object]:
+    """Take out of the settings what is a field of the built scene: its dotted name -> value.
+
+    A keyword of the schedule's own field that is set to none is the field: the scene's function wants its number.
+    """
+    scene, schedule = (typing.get_type_hints(kind) for kind in (Scene, Schedule))
+    fields = {}
+    for key in list(settings):
+        none = str(settings[key]).lower() == "none"
+        if key in schedule and (key not in parameters or (none and not _takes_none(parameters[key]))):
+            fields[f"schedule.{key}"] = settings.pop(key)
+        elif "." in key or (key in scene and key not in parameters):
+            fields[key] = settings.pop(key)
+    return fields
+
+
+def _takes_none(parameter: inspect.Parameter) -> bool:
+    wanted = _kind_of(parameter)
+    return wanted is types.NoneType or types.NoneType in typing.get_args(wanted)
 
 
 @contextlib.contextmanager
@@ -143,6 +165,26 @@ def keywords_of(path: Path) -> dict[str, object]:
     return {k: p.default for k, p in parameters.items()}
 
 
+def about(path: Path) -> tuple[str, dict[str, str]]:
+    """The first line of a scene file, and keyword -> default as `--set` takes it, with its unit."""
+    function, parameters, _ = _function(path)
+    said = getattr(function, "__globals__", {}).get("__doc__") or ""
+    first = next(iter(said.strip().splitlines()), "").strip().removesuffix(".")
+    return first, {key: _with_unit(parameter) for key, parameter in parameters.items()}
+
+
+DISPLAYED = {"m": ("mm", 1e3), "Pa": ("MPa", 1e-6), "degrees": ("deg", 1.0), "J/m^2": ("J/m2", 1.0)}
+"""SI unit -> the one in which a default is shown, and how many of it one is; others are shown as they are."""
+
+
+def _with_unit(parameter: inspect.Parameter) -> str:
+    default, unit = parameter.default, unit_of(_kind_of(parameter))
+    if isinstance(default, bool) or not isinstance(default, int | float):
+        return default if isinstance(default, str) else shown(default)
+    name, factor = ("", 1.0) if unit is None else DISPLAYED.get(unit.name, (unit.name, 1.0))
+    return f"{default * factor:.10g}{name}"
+
+
 def _call(function, path: Path, overrides: dict, settings: dict[str, object]) -> Scene:
     parameters = inspect.signature(function).parameters
     values = dict(overrides)
@@ -190,9 +232,9 @@ def family_of(kind: type):
 
 
 def _readings(text, wanted, dim: int):
-    """What a text may mean, the narrowest first; what is no text means itself."""
+    """What a text may mean, the narrowest first; what is no text means itself, and a list the tuple of its entries."""
     if not isinstance(text, str):
-        yield text
+        yield native(tuple(text) if isinstance(text, list) else text)
         return
     if text.lower() in ("none", "true", "false"):
         yield {"none": None, "true": True, "false": False}[text.lower()]
@@ -234,33 +276,49 @@ OUT_OF_RANGE = {"greater_than", "greater_than_equal", "less_than", "less_than_eq
 """What pydantic calls a number that is one, but not of those that are allowed."""
 
 
-def _with_field(owner, kind, key: str, path: list[str], text, dim: int):
-    """A copy of frozen data with one nested value replaced; `kind` is the annotation of `owner`, bodies.0.seeding
-    indexes a tuple; dim: of the scene, by which a unit is m or m^2."""
-    if not path:
-        return _parse(key, text, kind, dim)
-    name, rest = path[0], path[1:]
+def _with_fields(owner, kind, changes: dict[str, tuple[list[str], object]], dim: int):
+    """A copy of frozen data with nested values replaced, all of them before the copy is built and checked.
+
+    kind: the annotation of `owner`; changes: dotted name -> what is left of its path from `owner`, and the value;
+    bodies.0.seeding indexes a tuple. dim: of the scene, by which a unit is m or m^2.
+    """
+    whole = [key for key, (path, _) in changes.items() if not path]
+    if whole:  # the value itself, and what is to be changed in it comes after
+        owner = _parse(whole[0], changes[whole[0]][1], kind, dim)
+        changes = {key: change for key, change in changes.items() if key != whole[0]}
+        if not changes:
+            return owner
+    inner: dict[str, dict] = {}
+    for key, (path, value) in changes.items():
+        inner.setdefault(path[0], {})[key] = (path[1:], value)
+    first = {name: next(iter(own)) for name, own in inner.items()}  # a setting by which to name each
+
+    def entry(name: str, old, wanted):
+        return _with_fields(old, wanted, inner[name], dim)
+
     if isinstance(owner, tuple):
-        if name not in map(str, range(len(owner))):
-            raise SceneError(f"{short(key)}: {shown(name)} is no index; there are {len(owner)} entries, counted from 0")
-        k = int(name)
+        for name in inner:
+            if name not in map(str, range(len(owner))):
+                count = f"there are {len(owner)} entries, counted from 0"
+                raise SceneError(f"{short(first[name])}: {shown(name)} is no index; {count}")
         entries = next(typing.get_args(part) for part in within(kind) if typing.get_origin(part) is tuple)
-        entry = _with_field(owner[k], entries[0 if entries[-1] is Ellipsis else k], key, rest, text, dim)
-        return (*owner[:k], entry, *owner[k + 1 :])
+        kinds = [entries[0 if entries[-1] is Ellipsis else k] for k in range(len(owner))]
+        return tuple(entry(str(k), old, kinds[k]) if str(k) in inner else old for k, old in enumerate(owner))
     if not dataclasses.is_dataclass(owner) or isinstance(owner, type):
-        raise SceneError(f"{short(key)}: {shown(name)} is no field of a {type(owner).__name__}")
+        name = next(iter(inner))
+        raise SceneError(f"{short(first[name])}: {shown(name)} is no field of a {type(owner).__name__}")
     names = [f.name for f in dataclasses.fields(owner)]
-    if name not in names:
-        raise SceneError(_unknown(name, names, type(owner).__name__))
-    value = _with_field(getattr(owner, name), annotations(type(owner))[name], key, rest, text, dim)
+    for name in inner:
+        if name not in names:
+            raise SceneError(_unknown(name, names, type(owner).__name__))
+    values = {name: entry(name, getattr(owner, name), annotations(type(owner))[name]) for name in inner}
     try:
-        return replace(owner, **{name: value})
+        return replace(owner, **values)
     except SceneError:
         raise
     except (TypeError, ValueError, AttributeError, ArithmeticError) as error:
-        raise SceneError(
-            f"{short(key)}={short(str(text))} is refused: {type(owner).__name__} cannot be built: {error}"
-        ) from None
+        given = ", ".join(f"{short(key)}={short(str(value))}" for key, (_, value) in changes.items())
+        raise SceneError(f"{given} is refused: {type(owner).__name__} cannot be built: {error}") from None
 
 
 def scene_name(name: str) -> str:

@@ -10,9 +10,10 @@ from rsmpm_ti.records.history_table import nominal_stress
 from rsmpm_ti.rock.after_failure import CompressionOnly
 from rsmpm_ti.rock.nonlocal_mean import Local
 from rsmpm_ti.spec.boundaries import Platen
+from rsmpm_ti.spec.domain import Domain
 from rsmpm_ti.spec.loading_start import Affine
 from rsmpm_ti.spec.regions import Box, Difference
-from rsmpm_ti.spec.scene import Body, Domain, Loading, Scene, Schedule
+from rsmpm_ti.spec.scene import Body, Loading, Scene, Schedule
 from rsmpm_ti.spec.seeding import Jittered, Lattice
 from rsmpm_ti.study.runs import Run, Study
 

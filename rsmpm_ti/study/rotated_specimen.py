@@ -14,8 +14,9 @@ from rsmpm_ti.rock.after_failure import CompressionOnly
 from rsmpm_ti.rock.nonlocal_mean import Local
 from rsmpm_ti.solver.advance import Drive
 from rsmpm_ti.solver.readout import read_events
+from rsmpm_ti.spec.domain import Domain
 from rsmpm_ti.spec.regions import Difference, Slit
-from rsmpm_ti.spec.scene import Body, Domain, Loading, Scene, Schedule
+from rsmpm_ti.spec.scene import Body, Loading, Scene, Schedule
 from rsmpm_ti.spec.seeding import Jittered, Lattice
 from rsmpm_ti.study.flaw_cracks import lost_in_tension, near_flaw
 

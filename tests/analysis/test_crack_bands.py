@@ -10,7 +10,7 @@ from scipy.spatial import cKDTree
 from rsmpm_ti.analysis.crack_bands import find_bands, measure_cracks, openings
 from rsmpm_ti.analysis.crack_opening import jumps
 from rsmpm_ti.analysis.crack_path import growth, rayleigh_speed, tip_speed
-from rsmpm_ti.analysis.flaw_tips import flaw_tips, initiations
+from rsmpm_ti.analysis.flaw_tips import first_angle, flaw_tips, initiations
 from rsmpm_ti.analysis.load_curve import load_at
 from rsmpm_ti.analysis.wing_cracks import MIN_PARTICLES
 from rsmpm_ti.spec.regions import Slit
@@ -172,6 +172,33 @@ def test_initiation_has_an_entry_for_every_tip():
     assert entries[0]["angle_deg"] == pytest.approx(40.0, abs=3.0)
     assert (entries[0]["crack"], entries[3]["crack"]) == (1, 0)
     np.testing.assert_allclose(entries[3]["position_m"], TIPS[3].position, atol=2.0 * SPACING)
+
+
+def test_cracks_with_a_direction_leave_at_the_median_of_the_first_ones():
+    """Failures all over the tip, as of half-broken rock, whose cracks lie at 72 degrees, one in five anyhow."""
+    tip, dice = TIPS[0], np.random.default_rng(3)
+    x = tip.position + dice.uniform(-2e-3, 2e-3, (60, 2))
+    x = x[np.argsort(dice.random(60))]
+    lean = np.radians(72.0 + dice.uniform(-4.0, 4.0, 60))
+    lean[::5] = dice.uniform(0.0, np.pi, 12)
+    across = np.radians(FLAWS[0].angle) + lean + 0.5 * np.pi
+    # a line at 72 degrees has two senses; beside the face below the flaw it leads away to the other side
+    below = FLAWS[0].frame(x)[:, 1] < 0.0
+    across[below] = np.radians(FLAWS[0].angle) - lean[below] + 0.5 * np.pi
+    table = failures(x)
+    table.crack_angle = across
+    bands, _ = find_bands(table, SPACING * 3.0)
+    angle = initiations(table, bands, TIPS, history())[0]["angle_deg"]
+    assert angle == pytest.approx(72.0, abs=2.0)
+    table.crack_angle = None
+    by_places = initiations(table, bands, TIPS, history())[0]["angle_deg"]
+    assert abs(by_places - 72.0) > 2.0, "places alone know no direction here"
+
+
+def test_too_few_first_cracks_give_no_direction():
+    table = failures(np.concatenate([wing(TIPS[0], 70.0)[:1], wing(TIPS[0], 70.0, length=20e-3)[-60:]]))
+    table.crack_angle = np.zeros(len(table))
+    assert np.isnan(first_angle(table, np.arange(len(table)), TIPS[0]))
 
 
 def test_a_stray_failure_near_a_tip_is_no_initiation():

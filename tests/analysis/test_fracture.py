@@ -15,8 +15,9 @@ from rsmpm_ti.records.files import write_csv, write_json
 from rsmpm_ti.rock.criteria import MohrCoulomb
 from rsmpm_ti.rock.elasticity import Hooke
 from rsmpm_ti.rock.rock import Rock
+from rsmpm_ti.spec.domain import Domain
 from rsmpm_ti.spec.regions import Box, Difference, Slit
-from rsmpm_ti.spec.scene import Body, Domain, Loading, Scene, Schedule
+from rsmpm_ti.spec.scene import Body, Loading, Scene, Schedule
 
 FLAW = Slit(centre=(10e-3, 20e-3), length=8e-3, width=2e-3, angle=45.0)
 ROCK = Rock(
@@ -84,7 +85,7 @@ def test_summary_and_tables_say_the_same(tmp_path):
     assert energy == pytest.approx(events.released.sum(), rel=1e-9)
     stress = [float(row["nominal_stress_Pa"]) for row in found["acoustic"]]
     assert stress == sorted(stress) and stress[0] == pytest.approx(1e6)
-    assert len(fracture.paths) == 2
+    assert len(fracture.lines) == 2
 
 
 def test_columns_carry_their_units(tmp_path):
@@ -135,7 +136,7 @@ def test_solid_has_cracks_without_paths(tmp_path):
     (row,) = tables(tmp_path)["cracks"]
     assert row["length_m"] == row["aperture_mean_m"] == row["leaving_angle_deg"] == ""
     assert float(row["initiation_z_m"]) in (0.0, SPACING) and float(row["growth_m"]) > 3e-3
-    assert fracture.paths == [] and fracture.numbers()["crack_length_m"] is None
+    assert fracture.lines == [] and fracture.numbers()["crack_length_m"] is None
 
 
 def test_without_platens_nothing_has_a_stress(tmp_path):

@@ -25,8 +25,9 @@ from rsmpm_ti.rock.rock import Rock
 from rsmpm_ti.rock.smeared_crack import Directional
 from rsmpm_ti.rock.tensors import extreme_principals
 from rsmpm_ti.rock.viscosity import NoViscosity
+from rsmpm_ti.spec.domain import Domain
 from rsmpm_ti.spec.regions import Box
-from rsmpm_ti.spec.scene import Body, Domain, Loading, Scene, Schedule
+from rsmpm_ti.spec.scene import Body, Loading, Scene, Schedule
 
 pytestmark = pytest.mark.usefixtures("taichi_f64")
 

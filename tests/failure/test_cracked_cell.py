@@ -21,8 +21,9 @@ from rsmpm_ti.rock.nonlocal_mean import Local, Nonlocal
 from rsmpm_ti.rock.rock import Rock
 from rsmpm_ti.rock.smeared_crack import Directional
 from rsmpm_ti.rock.softening import Brittle, ExponentialSoftening, LinearSoftening
+from rsmpm_ti.spec.domain import Domain
 from rsmpm_ti.spec.regions import Box
-from rsmpm_ti.spec.scene import Body, Domain, Loading, Scene, Schedule
+from rsmpm_ti.spec.scene import Body, Loading, Scene, Schedule
 from rsmpm_ti.spec.scene_json import from_plain, to_plain
 from rsmpm_ti.verify.strength.crack_forms import (
     BAND,

@@ -11,9 +11,10 @@ from rsmpm_ti.rock.criteria import MohrCoulomb
 from rsmpm_ti.rock.elasticity import Hooke
 from rsmpm_ti.rock.rock import Rock
 from rsmpm_ti.spec.boundaries import Platen
+from rsmpm_ti.spec.domain import Domain
 from rsmpm_ti.spec.loading_start import Affine
 from rsmpm_ti.spec.regions import Box, Disc
-from rsmpm_ti.spec.scene import Body, Domain, Loading, Scene, Schedule
+from rsmpm_ti.spec.scene import Body, Loading, Scene, Schedule
 
 
 def test_sparse_grid_gives_the_same_result_as_dense():

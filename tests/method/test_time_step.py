@@ -20,8 +20,9 @@ from rsmpm_ti.solver.advance import Drive
 from rsmpm_ti.solver.history import History
 from rsmpm_ti.solver.survey import survey
 from rsmpm_ti.spec.boundaries import Wall
+from rsmpm_ti.spec.domain import Domain
 from rsmpm_ti.spec.regions import Box
-from rsmpm_ti.spec.scene import Body, Domain, Loading, Scene, Schedule
+from rsmpm_ti.spec.scene import Body, Loading, Scene, Schedule
 
 E, NU, RHO = 17e9, 0.14, 2600.0
 C = p_wave_speed(E, NU, RHO)

@@ -16,8 +16,9 @@ from rsmpm_ti.rock.rock import Rock
 from rsmpm_ti.rock.viscosity import BulkViscosity, NoViscosity
 from rsmpm_ti.run.run import simulate
 from rsmpm_ti.spec.boundaries import Wall
+from rsmpm_ti.spec.domain import Domain
 from rsmpm_ti.spec.regions import Box
-from rsmpm_ti.spec.scene import Body, Domain, Loading, Output, Scene, Schedule
+from rsmpm_ti.spec.scene import Body, Loading, Output, Scene, Schedule
 
 DENSITY, GRAVITY, DX = 2600.0, 9.81, 0.5
 STONE = Rock(

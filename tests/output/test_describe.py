@@ -43,8 +43,8 @@ def test_what_is_not_finite_is_an_empty_cell_or_null(tmp_path):
     rows = np.array([(0.5, np.nan), (np.inf, 1.0)], dtype=[("a", float), ("b", float)])
     write_history(tmp_path / "h.csv", rows)
     assert (tmp_path / "h.csv").read_text().split() == ["a,b", "0.5,", ",1"]
-    write_json(tmp_path / "s.json", {"a": float("nan"), "b": [1.0, np.float64("inf")]})
-    assert "".join((tmp_path / "s.json").read_text().split()) == '{"a":null,"b":[1.0,null]}'
+    write_json(tmp_path / "s.json", {"a": float("nan"), "b": [1.0, np.float64("inf"), -np.finfo(float).max]})
+    assert "".join((tmp_path / "s.json").read_text().split()) == '{"a":null,"b":[1.0,null,null]}'
 
 
 def test_a_file_that_fails_half_way_leaves_the_old_one(tmp_path):

@@ -2,52 +2,23 @@
 
 import numpy as np
 import pytest
+from painted import LIMIT, frame_painter, history, lattice, snapshot
 from PIL import Image
-from snapshots import snapshot_of
 
 from rsmpm_ti.errors import SceneError
 from rsmpm_ti.paint import ggui as ggui_module
-from rsmpm_ti.paint.figure import FramePainter, slab
+from rsmpm_ti.paint.figure import slab
 from rsmpm_ti.paint.ggui import Ggui, probe, verdict
 from rsmpm_ti.paint.layout import lay_out
 from rsmpm_ti.paint.palette import View, crack_palette, cracking_palette, margin_palette, stress_palette
 from rsmpm_ti.paint.png import write_png
 from rsmpm_ti.paint.raster import Raster
-from rsmpm_ti.paint.summary_picture import summary_picture
-from rsmpm_ti.records.history_table import HISTORY_COLUMNS
 from rsmpm_ti.records.snapshot import INTACT, SHEAR, TENSION
 
 pytestmark = pytest.mark.usefixtures("taichi_f64")
 
-LIMIT = 2e6
 VIEW = View(lower=(0.0, 0.0), upper=(0.04, 0.02), width=80, height=40)  # 2 pixels per mm
 NEUTRAL = stress_palette(LIMIT).ramp[127:129].mean(axis=0)
-
-
-def lattice(nx=40, ny=20, spacing=1e-3, lower=(0.0, 0.0)):
-    x, y = np.meshgrid((np.arange(nx) + 0.5) * spacing, (np.arange(ny) + 0.5) * spacing, indexing="ij")
-    return np.column_stack([x.ravel(), y.ravel()]) + lower
-
-
-def snapshot(x, sigma_1=0.0, mode=None, volume=1e-6, displacement=None, time=1e-3):
-    displacement = np.zeros_like(x) if displacement is None else displacement
-    fields = {"sigma_1": np.full(len(x), sigma_1), "volume": np.full(len(x), volume), "displacement": displacement}
-    return snapshot_of(x, mode, time=time, **fields)
-
-
-def history(rows, loaded=True):
-    table = np.zeros(rows, dtype=[(name, float) for name in HISTORY_COLUMNS])
-    table["time_s"] = np.linspace(0.0, 1e-3, rows)
-    table["axial_strain"] = np.linspace(0.0, 0.004, rows) if loaded else np.nan
-    table["stress_top_Pa"] = np.linspace(0.0, 60e6, rows) if loaded else np.nan
-    table["stress_bottom_Pa"] = np.linspace(0.0, 50e6, rows) if loaded else np.nan
-    table["failed_tension"] = np.linspace(0.0, 80.0, rows)
-    return table
-
-
-def frame_painter(kind="cracks", **changes):
-    options = {"lower": (0.0, 0.0), "upper": (0.05, 0.1), "stress_limit": LIMIT, "strain_limit": 5e-3}
-    return FramePainter(kind=kind, **{**options, "load_limit": 80e6, **changes})
 
 
 def ink(image, box):
@@ -249,44 +220,6 @@ def test_png_keeps_every_pixel_and_names_the_painter(tmp_path):
         assert picture.text == {"painter": "raster"}
         assert np.array_equal(np.array(picture), image)
     assert [p.name for p in path.parent.iterdir()] == ["frame.png"], "no temporary file is left"
-
-
-@pytest.mark.parametrize("table", [history(30), history(30, loaded=False), history(0)])
-def test_summary_has_a_curve_and_the_crack_pattern(tmp_path, table):
-    x = lattice(50, 100)
-    mode = np.where(abs(x[:, 0] - 0.025) < 1e-3, SHEAR, INTACT).astype(np.int8)
-    path = summary_picture(tmp_path / "summary.png", snapshot(x, mode=mode), table, frame_painter(), "a title")
-    with Image.open(path) as picture:
-        image = np.array(picture)
-    assert image.shape == (900, 1600, 3)
-    right = image[:, 900:]
-    assert (right == crack_palette().shear).all(axis=2).sum() > 1000
-    assert (image[:, :900] < 128).all(axis=2).sum() > 1000
-
-
-def test_summary_draws_crack_paths_with_lengths_and_the_acoustic_count(tmp_path):
-    """Against the same picture without them: new ink on the path, beside it a label, and a curve on the left."""
-    x = lattice(50, 100)
-    mode = np.where(abs(x[:, 0] - 0.025) < 2e-3, TENSION, INTACT).astype(np.int8)
-    long = np.column_stack([np.full(9, 0.025), np.linspace(0.02, 0.08, 9)])
-    short = np.array([[0.01, 0.01], [0.012, 0.012]])
-
-    painter = frame_painter()
-
-    def picture(*more) -> np.ndarray:
-        path = summary_picture(tmp_path / "s.png", snapshot(x, mode=mode), history(30), painter, "t", *more)
-        with Image.open(path) as image:
-            return np.array(image).astype(int)
-
-    plain, one, all_three = picture(), picture([long]), picture([long, short], np.linspace(1e-4, 9e-4, 40))
-    rows, columns = np.nonzero((plain != one).any(axis=2))
-    assert columns.min() > 900  # nothing but the crack panel has changed
-    dark = (one < 60).all(axis=2) & (plain[..., 0] > 180)
-    assert dark.sum() > 300  # the line, about 400 pixels long, and the digits
-    assert np.ptp(rows) > 300 and np.ptp(columns) > 40  # 60 of 110 mm high; the label is written beside the line
-    changed = (all_three != one).any(axis=2)
-    assert all(0 < np.ptp(positions) < 30 for positions in np.nonzero(changed[:, 1000:]))  # a line and no label
-    assert changed[:, :850].sum() > 300  # the curve
 
 
 def test_probe_answers_once_with_a_reason():

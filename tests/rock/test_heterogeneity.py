@@ -16,9 +16,10 @@ from rsmpm_ti.rock.elasticity import Hooke
 from rsmpm_ti.rock.heterogeneity import Uniform, Weibull
 from rsmpm_ti.rock.rock import Rock
 from rsmpm_ti.rock.viscosity import NoViscosity
+from rsmpm_ti.spec.domain import Domain
 from rsmpm_ti.spec.loading_start import AtRest
 from rsmpm_ti.spec.regions import Box
-from rsmpm_ti.spec.scene import Body, Domain, Loading, Scene, Schedule
+from rsmpm_ti.spec.scene import Body, Loading, Scene, Schedule
 from rsmpm_ti.spec.scene_json import from_plain, to_plain
 from rsmpm_ti.spec.seeding import Jittered, Lattice
 

@@ -12,9 +12,10 @@ from rsmpm_ti.errors import UnstableRun
 from rsmpm_ti.rock.after_failure import Clipped
 from rsmpm_ti.rock.heterogeneity import Weibull
 from rsmpm_ti.spec.boundaries import Platen
+from rsmpm_ti.spec.domain import Domain
 from rsmpm_ti.spec.loading_start import AtRest
 from rsmpm_ti.spec.regions import Box
-from rsmpm_ti.spec.scene import Body, Domain, Schedule
+from rsmpm_ti.spec.scene import Body, Schedule
 
 STEPS = 5
 LONE = load_scene("cube", dx=5e-3, flaw_width=15e-3)

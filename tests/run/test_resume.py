@@ -16,6 +16,7 @@ import pytest
 
 from rsmpm_ti.errors import SceneError
 from rsmpm_ti.output.files import CHECKPOINTS, write_checkpoint
+from rsmpm_ti.records.history_table import HISTORY_COLUMNS
 from rsmpm_ti.records.result import Progress
 from rsmpm_ti.run import checkpoint
 from rsmpm_ti.run.run import simulate
@@ -192,3 +193,71 @@ def test_loading_a_checkpoint_runs_nobodys_code(tmp_path):
 
 def test_without_a_checkpoint_resume_starts_from_the_start(tmp_path):
     assert checkpoint.read(tmp_path, {}) is None
+
+
+ELASTIC = ["intact", "--elastic", "--set", "dx=0.01", "--set", "shape=Linear", "--threads", "1", "--no-movie"]
+
+
+def ran(folder: Path, *options: str) -> dict:
+    assert main([*ELASTIC, *options, "--out", str(folder)]) == 0
+    return json.loads((folder / "summary.json").read_text())
+
+
+def names(folder: Path, pattern: str) -> list[str]:
+    return sorted(path.name for path in folder.glob(pattern))
+
+
+@pytest.mark.parametrize("adaptive", ["false", "true"])
+def test_a_run_that_is_done_goes_on_to_a_later_end_as_if_it_had_been_asked_for(tmp_path, adaptive):
+    """With other rows and other output too: the same steps, but where they are cut to end in time (adaptive ones)."""
+    steps = ("--set", f"schedule.adaptive={adaptive}")
+    ran(tmp_path / "a", *steps, "--set", "strain_end=1e-4", "--set", "schedule.rows=10", "--frames", "2")
+    more = (*steps, "--set", "strain_end=2e-4", "--set", "schedule.rows=40", "--frames", "4", "--set", "output.vtu=4")
+    summaries = [ran(tmp_path / "a", *more, "--resume"), ran(tmp_path / "b", *more)]
+    stored = [final_state(tmp_path / k)["history"][-1, HISTORY_COLUMNS.index("energy_elastic_J")] for k in "ab"]
+    # an adaptive step more or less, of 210, is 1e-5 of the strain where the specimen has swung
+    assert stored[0] == pytest.approx(stored[1], rel=1e-9 if adaptive == "false" else 1e-4)
+    assert abs(summaries[0]["steps"] - summaries[1]["steps"]) <= (
+        3 if adaptive == "true" else 0
+    )  # one at the old end, one per row
+    one, other = final_state(tmp_path / "a"), final_state(tmp_path / "b")
+    assert one["clock_strain"] == pytest.approx(2e-4, rel=5e-3)  # a step of 200 more, since steps are whole
+    assert one["clock_strain"] == pytest.approx(float(other["clock_strain"]), rel=1e-9)
+    rows = np.diff(one["history"][:, 0])
+    assert (rows > 0.0).all() and len(rows) > 25, "half of the run at 10 rows for it, half at 40 for the whole"
+    # before: 0, 1/2 and 1 of half the run; after: 3/4 and all of the whole
+    assert names(tmp_path / "a", "frames/stress_*.png") == [f"stress_{k:04d}.png" for k in range(5)]
+    assert json.loads((tmp_path / "a" / "scene.json").read_text())["scene"]["schedule"]["strain_end"] == 2e-4
+
+
+def test_output_may_be_asked_for_after_the_end(tmp_path):
+    first = ran(tmp_path, "--set", "strain_end=1e-4", "--frames", "0", "--set", "output.vtu=0")
+    assert names(tmp_path, "frames/*") == names(tmp_path, "*.vtu") == []
+    again = ran(tmp_path, "--set", "strain_end=1e-4", "--frames", "3", "--set", "output.vtu=2", "--resume")
+    assert names(tmp_path, "frames/stress*") == ["stress_0000.png"] and names(tmp_path, "*.vtu") == [
+        "particles_0000.vtu"
+    ]
+    assert again["steps"] == first["steps"] and again["peak_stress_Pa"] == first["peak_stress_Pa"]
+
+
+def test_an_end_by_time_takes_the_place_of_one_by_strain(tmp_path):
+    ran(tmp_path, "--set", "strain_end=1e-4", "--frames", "0")
+    summary = ran(tmp_path, "--set", "strain_end=none", "--set", "t_end=3ms", "--frames", "0", "--resume")
+    assert summary["steps"] * summary["dt_s"] == pytest.approx(3e-3, rel=1e-2)
+
+
+def test_an_end_that_is_past_is_refused_and_so_is_any_other_change(tmp_path, capsys):
+    ran(tmp_path, "--set", "strain_end=1e-4", "--frames", "0")
+    before = files(tmp_path)
+    changes = {
+        "strain_end=5e-5": r"schedule.strain_end = 5e-05 is refused: .*ends after t = 0\.002",
+        "time_scale=12": r"time_scale is 10\.0 there and 12\.0 here",
+        "rock.elasticity.nu=0.2": r"scene\.rock\.elasticity\.nu is 0\.14 there",
+        "loading.quasi_static=0.02": r"scene\.loading\.quasi_static",
+    }
+    for change, named in changes.items():
+        capsys.readouterr()
+        wanted = [] if "strain_end" in change else ["--set", "strain_end=1e-4"]
+        assert main([*ELASTIC, *wanted, "--set", change, "--frames", "0", "--out", str(tmp_path), "--resume"]) == 2
+        assert re.search(named, capsys.readouterr().err)
+    assert files(tmp_path) == before, "nothing was touched"

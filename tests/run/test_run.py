@@ -6,6 +6,7 @@ import subprocess
 import sys
 from dataclasses import replace
 from pathlib import Path
+from xml.etree import ElementTree
 
 import imageio.v3 as imageio
 import meshio
@@ -16,6 +17,7 @@ from rsmpm_ti import load_scene, simulate
 from rsmpm_ti.errors import UnstableRun
 from rsmpm_ti.records.history_table import HISTORY_COLUMNS
 from rsmpm_ti.records.result import Progress
+from rsmpm_ti.records.snapshot import PARTICLES
 from rsmpm_ti.records.summary_table import RECORD, SUMMARY
 from rsmpm_ti.scene import main
 
@@ -49,7 +51,9 @@ def test_history_and_events_hold_what_the_summary_says(run_folder):
     summary = json.loads((run_folder / "summary.json").read_text())
     history, events = table(run_folder / "history.csv"), table(run_folder / "events.csv")
     assert tuple(history[0]) == HISTORY_COLUMNS
-    assert list(events[0]) == ["time_s", "x_m", "y_m", "mode", "sigma_1_Pa", "sigma_3_Pa", "released_energy_J"]
+    assert list(events[0]) == [
+        "time_s", "true_time_s", "x_m", "y_m", "mode", "sigma_1_Pa", "sigma_3_Pa", "released_energy_J"
+    ]  # fmt: skip
     assert len(events) == summary["failed_tension"] + summary["failed_shear"] > 0
     assert float(history[-1]["failed_tension"]) == summary["failed_tension"]
     assert summary["steps"] * summary["dt_s"] == pytest.approx(2.5e-4 / 0.05, rel=2e-3)  # strain over its rate
@@ -89,7 +93,7 @@ def test_cracks_fragments_and_acoustic_events_hold_what_the_summary_says(run_fol
 def test_vtu_files_carry_the_promised_fields_and_the_cracks(run_folder):
     mesh = meshio.read(run_folder / "particles_0010.vtu")
     assert set(mesh.point_data) == {
-        "displacement", "velocity", "stress", "sigma_1", "sigma_3", "failure_mode", "failure_time", "volume",
+        "id", "displacement", "velocity", "stress", "sigma_1", "sigma_3", "failure_mode", "failure_time", "volume",
         "strength_factor", "margin", "governs", "damage", "aperture_m",
     }  # fmt: skip
     summary = json.loads((run_folder / "summary.json").read_text())
@@ -103,6 +107,33 @@ def test_vtu_files_carry_the_promised_fields_and_the_cracks(run_folder):
     assert (
         np.abs(stress[failed] - np.trace(stress[failed], axis1=1, axis2=2)[:, None, None] / 3 * np.eye(3)).max() < 1e-6
     )
+
+
+def test_vtu_files_say_when_they_are_of_at_which_load_and_what_codes_mean(run_folder):
+    history = table(run_folder / "history.csv")
+    field = {name: float(value[0]) for name, value in meshio.read(run_folder / "particles_0010.vtu").field_data.items()}
+    last = history[-1]
+    stress = 0.5 * (float(last["stress_top_Pa"]) + float(last["stress_bottom_Pa"]))
+    expected = {name: float(last[name]) for name in ("time_s", "true_time_s", "axial_strain")}
+    expected |= {"nominal_stress_Pa": stress, "failure_mode_intact": 0, "failure_mode_tension": 1}
+    assert field == pytest.approx(expected | {"failure_mode_shear": 2}, rel=1e-9)
+    assert field["true_time_s"] == pytest.approx(field["time_s"] / 16.0, rel=1e-12)
+    start = meshio.read(run_folder / "particles_0000.vtu")
+    assert "nominal_stress_Pa" not in start.field_data, "before the first row it is not known"
+    end = meshio.read(run_folder / "particles_0010.vtu").point_data["id"]
+    assert (np.diff(end) > 0).all() and np.isin(end, start.point_data["id"]).all()
+    text = (run_folder / "particles_0010.vtu").read_text()
+    ElementTree.fromstring(text)
+    assert all(f"{column.name} [{column.unit}]" in text for column in PARTICLES.columns)
+
+
+def test_what_is_not_known_is_no_number(run_folder):
+    """No opening by the paper's rule, no margin where nothing breaks: NaN, where there was 0 and 1."""
+    data = meshio.read(run_folder / "particles_0010.vtu").point_data
+    assert np.isnan(data["aperture_m"]).all() and np.isfinite(data["margin"]).all()
+    scene = load_scene("intact", dx=5e-3, settings={"strain_end": None, "t_end": 1e-5}).elastic()
+    snapshot = simulate(scene, threads=1).snapshot
+    assert np.isnan(snapshot.margin).all() and np.isnan(snapshot.aperture).all()
 
 
 def test_every_key_of_the_summary_is_declared_with_its_unit(run_folder):
@@ -175,8 +206,9 @@ def test_a_flying_fragment_is_sorted_before_it_leaves_its_slabs_reach():
     from rsmpm_ti.rock.elasticity import Hooke
     from rsmpm_ti.rock.rock import Rock
     from rsmpm_ti.solver.survey import survey
+    from rsmpm_ti.spec.domain import Domain
     from rsmpm_ti.spec.regions import Box
-    from rsmpm_ti.spec.scene import Body, Domain, Loading, Scene, Schedule
+    from rsmpm_ti.spec.scene import Body, Loading, Scene, Schedule
 
     big = Body(region=Box(lower=(0.0, 0.0), upper=(0.02, 0.02)))
     small = Body(region=Box(lower=(0.03, 0.01), upper=(0.032, 0.012)), velocity=(200.0, 0.0))

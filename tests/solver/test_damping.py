@@ -11,10 +11,11 @@ from rsmpm_ti.cases.static_state import set_up
 from rsmpm_ti.solver.damping import damping_said, viscous_energy
 from rsmpm_ti.solver.history import History
 from rsmpm_ti.spec.boundaries import Wall
+from rsmpm_ti.spec.domain import Domain
 from rsmpm_ti.spec.loader import load_scene
 from rsmpm_ti.spec.loading_start import AtRest
 from rsmpm_ti.spec.regions import Box
-from rsmpm_ti.spec.scene import Body, Domain, Loading, Scene, Schedule
+from rsmpm_ti.spec.scene import Body, Loading, Scene, Schedule
 from rsmpm_ti.spec.seeding import Lattice
 
 NAMES = ("work_J", "energy_kinetic_J", "energy_elastic_J", "energy_dissipated_J")

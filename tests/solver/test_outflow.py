@@ -1,11 +1,13 @@
 """What leaves the domain: the run ends, or what left is counted, booked and gone."""
 
+import json
 from dataclasses import replace
 
 import numpy as np
 import pytest
 import taichi as ti
 
+from rsmpm_ti import simulate
 from rsmpm_ti.errors import SceneError, UnstableRun
 from rsmpm_ti.mpm.clock import Clock
 from rsmpm_ti.rock.criteria import MohrCoulomb
@@ -18,8 +20,9 @@ from rsmpm_ti.solver.advance import Drive
 from rsmpm_ti.solver.guard import guard
 from rsmpm_ti.solver.readout import take_snapshot
 from rsmpm_ti.solver.survey import survey
+from rsmpm_ti.spec.domain import Domain
 from rsmpm_ti.spec.regions import Box
-from rsmpm_ti.spec.scene import Body, Domain, Loading, Scene, Schedule
+from rsmpm_ti.spec.scene import Body, Loading, Scene, Schedule
 
 DX, SPEED, UPPER = 1e-3, 100.0, 0.02
 BEYOND = 2.0 * DX
@@ -95,6 +98,21 @@ def everything_may_leave_or_end_the_run(drive: Drive) -> None:
     drive.clock = Clock(drive.sim)
     with pytest.raises(UnstableRun, match="every particle has left the domain; enlarge it"):
         drive.advance(1)
+
+
+def test_a_run_that_everything_leaves_has_booked_all_of_it(tmp_path):
+    """Mass, momentum and energy of one block in free flight, every file, and no division by what is not there."""
+    scene = replace(flight("drop", t_end=2.5e-4), bodies=flight("drop").bodies[:1])
+    with pytest.raises(UnstableRun, match="every particle has left") as ended:
+        simulate(scene, out=tmp_path, threads=1)
+    summary = json.loads((tmp_path / "summary.json").read_text())
+    mass = 2600.0 * (4e-3) ** 2
+    assert summary["dropped"] == summary["particles"] == 64
+    assert summary["dropped_mass_kg"] == pytest.approx(mass, rel=1e-12)
+    assert summary["dropped_momentum_kg_m_s"] == pytest.approx([mass * SPEED, 0.25 * mass * SPEED], rel=1e-11)
+    assert summary["dropped_energy_J"] == pytest.approx(0.5 * mass * SPEED**2 * (1.0 + 0.25**2), rel=1e-10)
+    assert summary["fragments"] == 0 and summary["largest_fragment_share"] is None
+    assert len(ended.value.result.snapshot.id) == 0 and (tmp_path / "summary.png").exists()
 
 
 def test_without_drop_the_run_ends_and_says_so(restart_taichi):

@@ -23,9 +23,10 @@ from rsmpm_ti.rock.viscosity import NoViscosity
 from rsmpm_ti.solver.history import History
 from rsmpm_ti.solver.readout import read_events, take_snapshot
 from rsmpm_ti.spec.boundaries import Platen, Wall
+from rsmpm_ti.spec.domain import Domain
 from rsmpm_ti.spec.loading_start import Affine, AtRest, Ramp
 from rsmpm_ti.spec.regions import Box, Difference, Disc
-from rsmpm_ti.spec.scene import Body, Domain, Loading, Scene, Schedule
+from rsmpm_ti.spec.scene import Body, Loading, Scene, Schedule
 from rsmpm_ti.spec.seeding import Jittered, Lattice
 
 pytestmark = pytest.mark.usefixtures("taichi_f64")

@@ -12,9 +12,9 @@ from rsmpm_ti import load_scene
 from rsmpm_ti.errors import SceneError
 from rsmpm_ti.method.shape import QuadraticBSpline
 from rsmpm_ti.spec.regions import Box, Difference, Slit
+from rsmpm_ti.spec.review.slit_check import check_slit
 from rsmpm_ti.spec.scene_json import from_plain, to_plain
 from rsmpm_ti.spec.seeding import Lattice
-from rsmpm_ti.spec.slit_check import check_slit
 
 LENGTH, WIDTH, CENTRE = 15e-3, 3e-3, (25e-3, 50e-3)
 BLOCK = Box(lower=(0.0, 0.0), upper=(50e-3, 100e-3))

@@ -13,9 +13,10 @@ from rsmpm_ti.rock.after_failure import Clipped
 from rsmpm_ti.rock.criteria import Unbreakable
 from rsmpm_ti.rock.viscosity import BulkViscosity
 from rsmpm_ti.spec.boundaries import Fixed, Wall
+from rsmpm_ti.spec.domain import Domain
 from rsmpm_ti.spec.loading_start import Affine, Press, Ramp
 from rsmpm_ti.spec.regions import Box, Difference, Disc, Slit, Union
-from rsmpm_ti.spec.scene import Domain, Loading, Output, Schedule
+from rsmpm_ti.spec.scene import Loading, Output, Schedule
 from rsmpm_ti.spec.seeding import Lattice
 
 BY_FIELD = [

@@ -8,11 +8,11 @@ from harness import name_of, variants
 
 from rsmpm_ti.errors import SceneError
 from rsmpm_ti.method.shape import Gimp, Linear, QuadraticBSpline
-from rsmpm_ti.spec import slit_check
 from rsmpm_ti.spec.regions import Box, Difference, Disc, Slit, Union, slits_of
+from rsmpm_ti.spec.review import slit_check
+from rsmpm_ti.spec.review.slit_check import Tie, check_cuts, check_slit, slit_tie
 from rsmpm_ti.spec.scene import Body
 from rsmpm_ti.spec.seeding import Jittered, Lattice
-from rsmpm_ti.spec.slit_check import Tie, check_cuts, check_slit, slit_tie
 
 DX = 0.5e-3
 ORIGIN = np.zeros(2)

@@ -14,8 +14,9 @@ from rsmpm_ti.rock.elasticity import Hooke
 from rsmpm_ti.rock.rock import Rock
 from rsmpm_ti.rock.viscosity import NoViscosity
 from rsmpm_ti.solver.readout import take_snapshot
+from rsmpm_ti.spec.domain import Domain
 from rsmpm_ti.spec.regions import Disc
-from rsmpm_ti.spec.scene import Body, Domain, Loading, Scene, Schedule
+from rsmpm_ti.spec.scene import Body, Loading, Scene, Schedule
 
 
 def elastic(E: float, nu: float, density: float) -> Rock:

@@ -10,9 +10,10 @@ from rsmpm_ti import simulate
 from rsmpm_ti.cases.case import Case, Outcome, at_most, relative
 from rsmpm_ti.rock.viscosity import BulkViscosity
 from rsmpm_ti.spec.boundaries import Fixed, Platen, Wall
+from rsmpm_ti.spec.domain import Domain
 from rsmpm_ti.spec.load_cell import Gauge, LoadCell
 from rsmpm_ti.spec.regions import Box
-from rsmpm_ti.spec.scene import Body, Domain, Loading, Scene, Schedule
+from rsmpm_ti.spec.scene import Body, Loading, Scene, Schedule
 from rsmpm_ti.verify.elastic.bodies import elastic
 
 E, DENSITY, GRAVITY = 17e9, 2600.0, 9.81

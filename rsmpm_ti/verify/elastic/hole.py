@@ -9,9 +9,10 @@ from rsmpm_ti.cases.case import Case, Outcome, at_most, relative
 from rsmpm_ti.cases.static_state import static_state
 from rsmpm_ti.method.shape import Linear
 from rsmpm_ti.spec.boundaries import Platen, Wall
+from rsmpm_ti.spec.domain import Domain
 from rsmpm_ti.spec.loading_start import Press
 from rsmpm_ti.spec.regions import Box, Difference, Disc
-from rsmpm_ti.spec.scene import Body, Domain, Loading, Scene, Schedule
+from rsmpm_ti.spec.scene import Body, Loading, Scene, Schedule
 from rsmpm_ti.spec.seeding import Lattice
 from rsmpm_ti.verify.elastic.closed_forms import kirsch
 from rsmpm_ti.verify.elastic.disc import cell_means, rms

@@ -23,8 +23,9 @@ from rsmpm_ti.rock.viscosity import NoViscosity
 from rsmpm_ti.solver.advance import Drive
 from rsmpm_ti.solver.readout import take_snapshot
 from rsmpm_ti.spec.boundaries import Wall
+from rsmpm_ti.spec.domain import Domain
 from rsmpm_ti.spec.regions import Box, Difference, Disc
-from rsmpm_ti.spec.scene import Body, Domain, Loading, Scene, Schedule
+from rsmpm_ti.spec.scene import Body, Loading, Scene, Schedule
 from rsmpm_ti.spec.seeding import Lattice
 from rsmpm_ti.verify.elastic.exact_motion import AxisAligned, Vortex
 

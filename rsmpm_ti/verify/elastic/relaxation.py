@@ -12,9 +12,10 @@ from rsmpm_ti.method.transfer import Apic, PicFlip
 from rsmpm_ti.solver.advance import Drive
 from rsmpm_ti.solver.readout import take_snapshot
 from rsmpm_ti.spec.boundaries import Fixed, Wall
+from rsmpm_ti.spec.domain import Domain
 from rsmpm_ti.spec.load_cell import LoadCell
 from rsmpm_ti.spec.regions import Box
-from rsmpm_ti.spec.scene import Body, Domain, Loading, Scene, Schedule
+from rsmpm_ti.spec.scene import Body, Loading, Scene, Schedule
 from rsmpm_ti.verify.elastic.bodies import elastic
 
 GRAVITY = 9.81

@@ -68,7 +68,7 @@ def field_error(
 
 
 CELLS = 4
-"""Cells across the slit: faces two cells apart share nodes at 45 degrees and are refused (see `spec/slit_check.py`)."""
+"""Cells across the slit: faces two cells apart share nodes at 45 degrees; refused by `spec/review/slit_check.py`."""
 
 
 def slit_specimen(dx: float, width: float, shape=None, seeding=None) -> Scene:

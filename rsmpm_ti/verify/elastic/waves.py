@@ -13,8 +13,9 @@ from rsmpm_ti.cases.static_state import set_up
 from rsmpm_ti.method.shape import Gimp, Linear, QuadraticBSpline
 from rsmpm_ti.solver.advance import Drive
 from rsmpm_ti.spec.boundaries import Platen, Wall
+from rsmpm_ti.spec.domain import Domain
 from rsmpm_ti.spec.regions import Box
-from rsmpm_ti.spec.scene import Body, Domain, Loading, Scene, Schedule
+from rsmpm_ti.spec.scene import Body, Loading, Scene, Schedule
 from rsmpm_ti.verify.elastic.bodies import elastic
 
 E, NU, DENSITY = 17e9, 0.14, 2600.0

@@ -15,8 +15,9 @@ from rsmpm_ti.rock.elasticity import Hooke
 from rsmpm_ti.rock.rock import Rock
 from rsmpm_ti.rock.viscosity import BulkViscosity
 from rsmpm_ti.spec.boundaries import Platen
+from rsmpm_ti.spec.domain import Domain
 from rsmpm_ti.spec.regions import Box
-from rsmpm_ti.spec.scene import Body, Domain, Loading, Scene, Schedule
+from rsmpm_ti.spec.scene import Body, Loading, Scene, Schedule
 
 E, DENSITY, SIDE, PRESSURE = 17e9, 2600.0, 20e-3, 10e6
 HOLDING, SLIDING = 0.5, 0.2

@@ -20,9 +20,10 @@ from rsmpm_ti.rock.criteria import Unbreakable
 from rsmpm_ti.rock.elasticity import Hooke
 from rsmpm_ti.rock.rock import Rock
 from rsmpm_ti.spec.boundaries import Platen
+from rsmpm_ti.spec.domain import Domain
 from rsmpm_ti.spec.loading_start import Affine, AtRest
 from rsmpm_ti.spec.regions import Box
-from rsmpm_ti.spec.scene import Body, Domain, Loading, Scene, Schedule
+from rsmpm_ti.spec.scene import Body, Loading, Scene, Schedule
 
 E, DENSITY = 17e9, 2600.0
 C = math.sqrt(E / DENSITY)

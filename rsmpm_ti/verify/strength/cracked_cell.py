@@ -10,8 +10,9 @@ from rsmpm_ti.cases.static_state import set_up
 from rsmpm_ti.method.shape import Linear
 from rsmpm_ti.rock.smeared_crack import Directional
 from rsmpm_ti.spec.boundaries import Platen, Wall
+from rsmpm_ti.spec.domain import Domain
 from rsmpm_ti.spec.regions import Box
-from rsmpm_ti.spec.scene import Body, Domain, Loading, Scene, Schedule
+from rsmpm_ti.spec.scene import Body, Loading, Scene, Schedule
 from rsmpm_ti.verify.strength.crack_forms import BAND, G_F_I, LAM, SIN_R, TAN_R, TENSILE, M, across
 from rsmpm_ti.verify.strength.crack_paths import (
     LAWS,

@@ -15,9 +15,10 @@ from rsmpm_ti.records.snapshot import MODE_NAMES, SHEAR, TENSION
 from rsmpm_ti.rock.elasticity import Hooke
 from rsmpm_ti.rock.viscosity import NoViscosity
 from rsmpm_ti.solver.readout import read_events
+from rsmpm_ti.spec.domain import Domain
 from rsmpm_ti.spec.loading_start import AtRest
 from rsmpm_ti.spec.regions import Box
-from rsmpm_ti.spec.scene import Body, Domain, Loading, Scene, Schedule
+from rsmpm_ti.spec.scene import Body, Loading, Scene, Schedule
 from rsmpm_ti.spec.seeding import Lattice
 
 E, NU = 17e9, 0.14

@@ -12,8 +12,9 @@ from rsmpm_ti.rock.elasticity import Hooke
 from rsmpm_ti.rock.rock import Rock
 from rsmpm_ti.rock.viscosity import NoViscosity
 from rsmpm_ti.spec.boundaries import Platen, Wall
+from rsmpm_ti.spec.domain import Domain
 from rsmpm_ti.spec.regions import Box
-from rsmpm_ti.spec.scene import Body, Domain, Loading, Scene, Schedule
+from rsmpm_ti.spec.scene import Body, Loading, Scene, Schedule
 
 EDGE, SPEED, STEPS = 1e-3, 0.1, 400
 E, NU, TENSILE = 17e9, 0.14, 2e6

@@ -10,8 +10,9 @@ from rsmpm_ti.failure.stress_update import check_failure, update_stress
 from rsmpm_ti.fields.state import Simulation
 from rsmpm_ti.method.shape import Linear
 from rsmpm_ti.rock.rock import Rock
+from rsmpm_ti.spec.domain import Domain
 from rsmpm_ti.spec.regions import Box
-from rsmpm_ti.spec.scene import Body, Domain, Loading, Scene, Schedule
+from rsmpm_ti.spec.scene import Body, Loading, Scene, Schedule
 from rsmpm_ti.spec.seeding import Lattice
 
 

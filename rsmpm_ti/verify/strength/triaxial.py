@@ -25,9 +25,10 @@ from rsmpm_ti.records.snapshot import SHEAR
 from rsmpm_ti.solver.history import History
 from rsmpm_ti.solver.readout import read_events, take_snapshot
 from rsmpm_ti.spec.boundaries import Platen
+from rsmpm_ti.spec.domain import Domain
 from rsmpm_ti.spec.loading_start import Affine
 from rsmpm_ti.spec.regions import Box, Disc
-from rsmpm_ti.spec.scene import Body, Domain, Loading, Scene, Schedule
+from rsmpm_ti.spec.scene import Body, Loading, Scene, Schedule
 from rsmpm_ti.spec.seeding import Jittered, Lattice
 
 E, NU, DENSITY = 17e9, 0.14, 2600.0

@@ -14,9 +14,10 @@ from rsmpm_ti.rock.heterogeneity import Weibull
 from rsmpm_ti.rock.viscosity import NoViscosity
 from rsmpm_ti.solver.readout import read_events, take_snapshot
 from rsmpm_ti.spec.boundaries import Platen
+from rsmpm_ti.spec.domain import Domain
 from rsmpm_ti.spec.loading_start import Affine
 from rsmpm_ti.spec.regions import Box
-from rsmpm_ti.spec.scene import Body, Domain, Loading, Scene, Schedule
+from rsmpm_ti.spec.scene import Body, Loading, Scene, Schedule
 from rsmpm_ti.spec.seeding import Lattice
 
 E, NU, TENSILE = 17e9, 0.14, 2e6
