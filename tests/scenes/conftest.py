@@ -29,3 +29,9 @@ def coarse_run():
         return simulate(load_scene(name, **COARSE[name]), threads=1)
 
     return run
+
+
+@pytest.fixture(scope="session")
+def coarse():
+    """name -> keywords of the coarse run."""
+    return lambda name: dict(COARSE[name])

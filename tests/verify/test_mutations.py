@@ -79,6 +79,31 @@ MUTATIONS = {
         [("mpm/g2p.py", "return ti.cast(dt * v_middle.dot(b)", "return ti.cast(dt * (v_middle - 0.5 * dt * b).dot(b)")],
         "gravity",
     ),
+    "platens that stay where they were": (
+        [
+            (
+                "fields/grid.py",
+                "        self.followed = tuple(d for d in range(dim) if ",
+                "        self.followed = tuple(d for d in () if ",
+            )
+        ],
+        "lab_platens",
+    ),
+    "platens that pull": (
+        [
+            ("spec/boundaries.py", "return not (self.bonded or self.pulls)", "return False"),
+            ("spec/boundaries.py", "elif ti.static(self.pulls) or pressing > 0.0:", "else:"),
+        ],
+        "lab_platens",
+    ),
+    "friction without the confining pressure": (
+        [("mpm/contact.py", "taken = dt * sim.confinement", "taken = 0.0 * dt * sim.confinement")],
+        "lab_friction",
+    ),
+    "load of the first platen of a side alone": (
+        [("spec/load_cell.py", "(b.axis, b.side) == (axis, name))", "(b.axis, b.side) == (axis, name))[:1]")],
+        "lab_bending",
+    ),
     "forgotten stress out of the plane": (
         [
             (
