@@ -159,7 +159,11 @@ def test_recorded_scene_is_a_scene_again(command, tmp_path):
     path = tmp_path / "cube" / "scene.json"
     write_json(path, {"name": "cube", "scene": to_plain(load_scene("cube", quick=True))})
     again, first = command(str(path), "--check"), command("cube", "--quick", "--check")
-    assert again == first and again[0] == 0
+    timed = "estimate"  # by a loop that takes a little more or less each time
+    assert [line for line in again[1].splitlines() if timed not in line] == [
+        line for line in first[1].splitlines() if timed not in line
+    ]
+    assert again[0] == first[0] == 0
     assert scene_of(str(path), "--set", "schedule.cfl=0.2").schedule.cfl == 0.2
     assert "no keywords" in refused(command, str(path), "--set", "flaw_angle=30")
 

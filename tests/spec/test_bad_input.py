@@ -98,7 +98,7 @@ def command():
     """run(setting, ...) -> (the scene or None, message) of `cube --check`, in this process."""
     patch, accepted = pytest.MonkeyPatch(), []
 
-    def describe(scene) -> str:
+    def describe(scene, threads=None) -> str:
         check_runnable(scene)
         accepted.append(scene)
         return "runs"
