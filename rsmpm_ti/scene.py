@@ -220,6 +220,8 @@ def report(result) -> str:
         f"{s['particles']} particles, {s['steps']} steps: {s['compile_s']:.1f} s of start-up, {s['wall_s']:.1f} s "
         f"of run, {s['painting_s']:.1f} s of it painting; {speed:.1f} M particle-steps/s"
     ]
+    # before the numbers that they are about
+    lines += [f"warning: {sentence}" for sentence in s["warnings"]]
     if s["onset_stress_Pa"] is not None and s["onset_stress_Pa"] != s["first_failure_stress_Pa"]:
         lines.append(f"strength begins to be lost at {s['onset_stress_Pa'] / 1e6:.3f} MPa; failed: open by half of it")
     if s["first_failure_stress_Pa"] is not None:
@@ -243,7 +245,6 @@ def report(result) -> str:
         )
     if s["dropped"]:
         lines.append(f"{s['dropped']} particles left the domain with {s['dropped_energy_J']:.3g} J and were dropped")
-    lines += [f"warning: {sentence}" for sentence in s["warnings"]]
     if result.signal:
         lines.append(f"stopped early: {result.stopped}; everything up to there is written; go on with --resume")
     elif result.stopped:

@@ -26,10 +26,10 @@ per cent of that in the middle (Hondros 1959), and farther out the wedges below 
 def warnings_of(scene: Scene, numbers: dict, history: np.ndarray, events: EventTable) -> list[str]:
     """Sentences, most of them with a remedy; numbers: of summary.json so far."""
     found = [
+        *([_beside_the_middle(scene, events), _near_platen(scene, events)] if len(events) else []),
         _sudden_start(scene),
         _imbalance(numbers),
         _motion(numbers, history),
-        *([_near_platen(scene, events), _beside_the_middle(scene, events)] if len(events) else []),
         numbers["numerical_fracture"] or "",
     ]
     return [sentence for sentence in found if sentence]
