@@ -4,12 +4,27 @@ Taichi 1.7.4 skips nodes of `pointer(n).dense(8)` where n is no power of two (it
 """
 
 import itertools
+from dataclasses import replace
 
 import numpy as np
 import pytest
 import taichi as ti
 
-from rsmpm_ti import Body, Disc, Domain, Hooke, Linear, Loading, QuadraticBSpline, Rock, Scene, Schedule, Unbreakable
+from rsmpm_ti import (
+    Body,
+    Disc,
+    Domain,
+    Hooke,
+    Linear,
+    Loading,
+    QuadraticBSpline,
+    Rock,
+    Scene,
+    Schedule,
+    Unbreakable,
+    load_scene,
+    simulate,
+)
 from rsmpm_ti.cases.static_state import set_up
 from rsmpm_ti.fields.grid import Grid
 from rsmpm_ti.fields.nodes import BLOCK, Nodes
@@ -80,3 +95,19 @@ def test_sparse_run_is_the_dense_one(restart_taichi, cells, threads):
         np.testing.assert_array_equal(getattr(found[1], name), getattr(found[0], name))
     speed = np.abs(found[1].velocity - 10.0).max()
     assert speed < 1e-9, "nothing acts on it"
+
+
+@pytest.mark.parametrize(
+    "change",
+    [{}, *(pytest.param({"order": order}, marks=pytest.mark.validation) for order in ("usf", "usl"))],
+    ids=lambda change: change.get("order", "musl"),
+)
+def test_sparse_run_between_rough_platens_is_the_dense_one(change):
+    """Bit for bit: the grid goes with the platens, and what nodes of their planes remember is no field of the nodes."""
+    scene, found = load_scene("intact", dx=5e-3, strain_end=1e-4), []
+    rough = tuple(replace(platen, friction=0.4) for platen in scene.loading.boundaries)
+    scene = replace(scene, loading=replace(scene.loading, boundaries=rough), **change)
+    for grid in ("dense", "sparse"):
+        found.append(simulate(replace(scene, domain=replace(scene.domain, grid=grid)), threads=1).snapshot)
+    for name in ("x", "velocity", "sigma"):
+        np.testing.assert_array_equal(getattr(found[1], name), getattr(found[0], name))

@@ -5,6 +5,7 @@ end, or the specimen burst after a peak. Coarse, as the other tests of scenes.
 """
 
 import json
+import math
 
 import pytest
 
@@ -43,6 +44,8 @@ def settings(name: str, coarse: dict, strength: float, E: float, seed: int) -> l
             changes[field] = getattr(softening, energy) * s**2 * 17e9 / E
     if scene.loading.confinement:
         changes["loading.confinement"] = s * scene.loading.confinement
+    if hasattr(scene.loading.start, "time"):  # as many wave transits as before
+        changes["loading.start.time"] = scene.loading.start.time * max(1.0, math.sqrt(17e9 / E))
     if hasattr(scene.bodies[0].seeding, "seed"):
         changes["bodies.0.seeding.seed"] = seed
     return [part for key, value in changes.items() for part in ("--set", f"{key}={value!r}")]

@@ -104,6 +104,16 @@ MUTATIONS = {
         [("spec/load_cell.py", "(b.axis, b.side) == (axis, name))", "(b.axis, b.side) == (axis, name))[:1]")],
         "lab_bending",
     ),
+    "slits that separate by mass alone": (
+        [
+            (
+                "spec/review/slit_check.py",
+                "return self.passed <= TIED_FRACTION and self.highest <= TIP_FRACTION",
+                "return True",
+            )
+        ],
+        "open_slit",
+    ),
     "forgotten stress out of the plane": (
         [
             (
