@@ -26,6 +26,7 @@ per cent of that in the middle (Hondros 1959), and farther out the wedges below 
 def warnings_of(scene: Scene, numbers: dict, history: np.ndarray, events: EventTable) -> list[str]:
     """Sentences, most of them with a remedy; numbers: of summary.json so far."""
     found = [
+        _settling(scene, events),
         _sudden_start(scene),
         _imbalance(numbers),
         _motion(numbers, history),
@@ -33,6 +34,17 @@ def warnings_of(scene: Scene, numbers: dict, history: np.ndarray, events: EventT
         numbers["numerical_fracture"] or "",
     ]
     return [sentence for sentence in found if sentence]
+
+
+def _settling(scene: Scene, events: EventTable) -> str:
+    """Failures before the clock started."""
+    failed = int(np.count_nonzero(events.time == 0.0)) if scene.loading.settle else 0
+    if not failed:
+        return ""
+    return (
+        f"{failed} failures while the bodies settled, booked at time 0: the rock does not bear what loads it at the "
+        f"start; lower that, or take it for the first result"
+    )
 
 
 def _sudden_start(scene: Scene) -> str:

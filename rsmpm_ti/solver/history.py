@@ -34,6 +34,13 @@ class History:
         self._impulse, self._time = start.impulse, clock.time
         self._cell, self.extensometer = sim.scene.loading.load_cell, Extensometer(sim)
         self.load, self.reactions = NO_LOAD, ReactionRows(sim)
+        self._zero = np.zeros(len(self.columns))  # readings of instruments when the clock started
+
+    def zero(self, view: View) -> None:
+        """What is measured on the specimen counts from here: after bodies have settled."""
+        gauges = [gauge.column for gauge in self._sim.scene.loading.cell.gauges]
+        counted = {"lateral_strain", "volumetric_strain", *gauges}
+        self._zero = np.array([column.value(view) if column.name in counted else 0.0 for column in self.columns])
 
     @property
     def energy_start(self) -> float:
@@ -65,7 +72,8 @@ class History:
             self.load = self._cell.read(forces, self._sim.scene.loading.confinement)
         else:
             self.load = NO_LOAD
-        self._rows.append(tuple(self._value(column, view) for column in self.columns))
+        zeros = zip(self.columns, self._zero, strict=True)
+        self._rows.append(tuple(self._value(column, view) - float(zero) for column, zero in zeros))
         self.reactions.see(view.time, forces)
         self._impulse, self._time = survey.impulse, view.time
         self.books = self.books.after(survey)
@@ -93,6 +101,7 @@ class History:
             **{f"history_energy_{name}": np.array(value) for name, value in asdict(self.books).items()},
             "history_impulse": np.array(self._impulse),
             "history_time": np.array(self._time),
+            "history_zero": self._zero,
             **self.reactions.state(),
         }
 
@@ -100,4 +109,5 @@ class History:
         self._rows, self._table = [tuple(row) for row in state["history"].tolist()], None
         self.books = EnergyBooks(**{name: float(state[f"history_energy_{name}"]) for name in asdict(self.books)})
         self._impulse, self._time = state["history_impulse"], float(state["history_time"])
+        self._zero = state["history_zero"]
         self.reactions.resume(state)

@@ -16,9 +16,9 @@ class ReactionRows:
     def see(self, time: float, forces: np.ndarray) -> None:
         """Add a row. forces: of each boundary on the bodies, means since the row before [N], [boundaries, dim]."""
         if self._boundaries:
-            travel = self._sim.grid.travel.to_numpy()
-            gone = [travel[b.axis, 0 if b.side == "lower" else 1] for b in self._boundaries]
-            self._rows.append(np.concatenate(([time], *np.column_stack((forces, gone)))))
+            gone = self._sim.grid.gone()
+            way = [gone[b.axis, 0 if b.side == "lower" else 1] for b in self._boundaries]
+            self._rows.append(np.concatenate(([time], *np.column_stack((forces, way)))))
 
     def table(self) -> np.ndarray | None:
         """Structured array of the rows so far; None without boundaries."""

@@ -26,6 +26,7 @@ from rsmpm_ti.spec.confinement import check_confined_rock
 from rsmpm_ti.spec.domain import Domain
 from rsmpm_ti.spec.ground.gravity import ForceField, Gravity, check_gravity
 from rsmpm_ti.spec.ground.in_situ import InSitu, check_initial_stress
+from rsmpm_ti.spec.ground.settling import check_settling
 from rsmpm_ti.spec.load_cell import LoadCell
 from rsmpm_ti.spec.loading_start import Affine, AtRest, Press, Program, Ramp
 from rsmpm_ti.spec.mass_scaling import MAX_TIME_SCALE, estimate
@@ -75,7 +76,8 @@ class Loading:
     position [m] and the time [s]. A scene file brings its own, so a scene with one of these cannot be run again from
     its record.
     confinement is a pressure [Pa] on every free surface, in which bodies start at rest (see `confinement.py`).
-    initial_stress is that of rock in the ground (see `ground/in_situ.py`).
+    initial_stress is that of rock in the ground (see `ground/in_situ.py`). settle: bodies first come to rest under
+    what loads them at time 0, and only then the clock starts (see `ground/settling.py`).
     cell: what is measured, and gauges; what it leaves open comes from the platens (see `load_cell.py`).
     """
 
@@ -95,6 +97,7 @@ class Loading:
     confinement: Annotated[Pressure, NotNegative, Remedy("it is compression positive")] = 0.0
     cell: LoadCell = LoadCell()
     initial_stress: InSitu | None = None
+    settle: bool = False
 
     @property
     def platens(self) -> tuple[Platen, Platen] | None:
@@ -224,6 +227,7 @@ class Scene:
         check_confined_rock(self.loading.confinement, self.rock.elasticity)
         check_initial_stress(self)
         check_gravity(self)
+        check_settling(self)
         check_bodies(self)
         check_loading(self)
         check_stop(self)

@@ -45,7 +45,7 @@ def column(dim: int = 2, lid: bool = False, steps: int = 200, rock: Rock = ROCK,
     walls = [Wall(axis=d, side=s, position=p) for d in range(dim - 1) for s, p in (("lower", 0.0), ("upper", 2.0 * DX))]
     walls += [Wall(axis=dim - 1, side="lower", position=0.0)]
     walls += [Wall(axis=dim - 1, side="upper", position=HEIGHT)] if lid else []
-    parts = {name: loading.pop(name) for name in ("shape", "order", "seeding") if name in loading}
+    parts = {name: loading.pop(name) for name in ("shape", "order", "seeding", "transfer") if name in loading}
     scene = Scene(
         title="column",
         domain=Domain(lower=dim * (0.0,), upper=(*top[:-1], HEIGHT if lid else HEIGHT + 4.0 * DX), dx=DX),

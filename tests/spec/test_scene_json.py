@@ -116,7 +116,7 @@ def test_scene_recorded_before_the_move_still_loads():
     """Written by the code of 2026-11-23; fields that are new since then have their defaults, others new names."""
     path = Path(__file__).parent / "recorded_disc_lab.json"
     recorded = json.loads(path.read_text())["scene"]
-    recorded["loading"] |= {"cell": to_plain(LoadCell()), "initial_stress": None}
+    recorded["loading"] |= {"cell": to_plain(LoadCell()), "initial_stress": None, "settle": False}
     for platen in recorded["loading"]["boundaries"]:
         platen |= {"pulls": False, "force": None, "stress": None}
     recorded["schedule"]["stop_after_drop"] = None

@@ -1,1 +1,1 @@
-"""Rock in the ground: its weight, and the stress that it starts with."""
+"""Rock in the ground: its weight, the stress that it starts with, and how it comes to rest before a run."""
