@@ -42,6 +42,8 @@ from .spec.boundaries import Fixed as Fixed
 from .spec.boundaries import Platen as Platen
 from .spec.boundaries import Wall as Wall
 from .spec.domain import Domain as Domain
+from .spec.ground.gravity import Gravity as Gravity
+from .spec.ground.in_situ import InSitu as InSitu
 from .spec.load_cell import Gauge as Gauge
 from .spec.load_cell import LoadCell as LoadCell
 from .spec.loader import load_scene as load_scene

@@ -25,6 +25,8 @@ from rsmpm_ti.fields.state import initial_velocity
 from rsmpm_ti.output.pictures import load_limits, stress_limit
 from rsmpm_ti.rock.elasticity import Hooke
 from rsmpm_ti.spec.domain import Domain
+from rsmpm_ti.spec.ground.gravity import Gravity
+from rsmpm_ti.spec.ground.in_situ import InSitu
 from rsmpm_ti.spec.load_cell import Gauge, LoadCell
 from rsmpm_ti.spec.loader import load_scene
 from rsmpm_ti.spec.loading_start import AtRest
@@ -76,7 +78,9 @@ def bases() -> list[Scene]:
         title="solid", domain=Domain(lower=(0.0,) * 3, upper=(0.012,) * 3, dx=2e-3), bodies=(block,), rock=plain.rock,
         loading=Loading(), schedule=Schedule(t_end=1e-5),
     )  # fmt: skip
-    return [plain, timed, lab, replace(lab, schedule=Schedule(t_end=1e-2)), solid]
+    stress, weight = InSitu(axis=2, surface=0.02, K0=0.5), Gravity(b=(0.0, 0.0, -1.0), ramp=1e-4)
+    ground = replace(solid, loading=Loading(initial_stress=stress, force_field=weight, body_force=(0.0, 0.0, -9.81)))
+    return [plain, timed, lab, replace(lab, schedule=Schedule(t_end=1e-2)), solid, ground]
 
 
 def at(thing, path: list):

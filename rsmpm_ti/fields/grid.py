@@ -64,13 +64,17 @@ class Grid:
         self.travel = ti.field(ti.f64, (dim, 2))  # of each side since the start [m]
         self.velocity = ti.field(ti.f64, (dim, 2))  # of sides that a force moves [m/s]
         self._answered = ti.field(ti.f64, (dim, 2))  # impulse that such a side has given the bodies so far [N s]
+        self._began = ti.field(ti.f64, (dim, 2))  # travel at which the clock started: of bodies that settled first [m]
+        self.settles = scene.loading.settle
+        self.pace = ti.field(ti.f64, ())  # of time, and of sides that have a speed: 0 while bodies settle, then 1
+        self.pace[None] = 1.0
         self._now, self._start = ti.field(ti.f64, (dim, 3)), ti.field(ti.f64, (dim, 3))
         self.begin()
 
     def begin(self) -> None:
         """Everything as it is at the start."""
         at_rest = np.array([(origin, self.inv_dx, self.dx) for origin in self.origin])
-        nothing = {f"grid_{name}": np.zeros((self.dim, 2)) for name in ("travel", "velocity", "answered")}
+        nothing = {f"grid_{name}": np.zeros((self.dim, 2)) for name in ("travel", "velocity", "answered", "began")}
         self.resume(nothing | {"grid_frame": at_rest})
 
     def row(self, boundary) -> int:
@@ -92,7 +96,18 @@ class Grid:
 
     @property
     def _kept(self) -> dict:
-        return {"travel": self.travel, "velocity": self.velocity, "answered": self._answered, "frame": self._now}
+        ways = {"travel": self.travel, "began": self._began}
+        return ways | {"velocity": self.velocity, "answered": self._answered, "frame": self._now}
+
+    def gone(self) -> np.ndarray:
+        """How far each side has gone since the clock started [m], [dim, 2]."""
+        return self.travel.to_numpy() - self._began.to_numpy()
+
+    def count_from_here(self, impulse: np.ndarray) -> None:
+        """The clock starts: `gone` is nothing, and so is what boundaries have given so far [N s], [boundaries, dim]."""
+        self._began.from_numpy(self.travel.to_numpy())
+        for held in self.held:
+            self._answered[held.axis, held.side] -= impulse[held.boundary, held.axis]
 
     @property
     def fastest(self) -> float:
@@ -124,6 +139,8 @@ class Grid:
         for d in ti.static(self.followed):
             for side in ti.static(range(2)):
                 way = ti.cast(ti.static(self.speeds[d][side]), ti.f64) * ti.cast(factor, ti.f64) * ti.cast(dt, ti.f64)
+                if ti.static(self.settles):
+                    way *= self.pace[None]
                 self.travel[d, side] = self.travel[d, side] + way + self.velocity[d, side] * ti.cast(dt, ti.f64)
             for column in ti.static(range(3)):
                 self._start[d, column] = self._now[d, column]

@@ -16,6 +16,7 @@ from rsmpm_ti.fields.records import Events, Ledger, Report
 from rsmpm_ti.method.tensor_product import offsets, rows
 from rsmpm_ti.rock.tensors import PACKED_LENGTH
 from rsmpm_ti.spec.confinement import confined_volume_ratio
+from rsmpm_ti.spec.ground.in_situ import start_stress
 from rsmpm_ti.spec.loading_start import Affine
 from rsmpm_ti.spec.scene import Scene
 from rsmpm_ti.spec.seeding import Seeds
@@ -47,8 +48,13 @@ class Simulation:
         self.band = scene.shape.crack_band * scene.domain.dx
         self.confinement = scene.loading.confinement
         self.confined = self.confinement > 0.0
-        self.J_start = confined_volume_ratio(self.confinement, scene.rock.elasticity)
-        # of the stress-free rock, to go with `particles.volume`; under the confinement it is the scene's
+        x, volume = (np.concatenate([getattr(body, name) for body in seeds]) for name in ("x", "volume"))
+        J: float | np.ndarray = confined_volume_ratio(self.confinement, scene.rock.elasticity)
+        self.J_start, stress = J, -self.confinement * np.ones((len(x), 3))
+        if scene.loading.initial_stress is not None:
+            stress, J = start_stress(scene, x)
+            self.J_start = float(volume.sum() / (volume / J).sum())
+        # of the stress-free rock, to go with `particles.volume`; as it starts it is the scene's
         self.density, self.wave_speed = scene.density * self.J_start, scene.wave_speed
         # mass scaling must leave the weight of a body unchanged, so its acceleration shrinks as its density grows
         force = scene.loading.body_force or (0.0,) * scene.dim
@@ -76,24 +82,23 @@ class Simulation:
         if self.is_nonlocal:
             self.nonlocal_sums = NonlocalSums(scene, self.grid, real)
         self.report = Report(scene)
-        self._fill(scene, seeds)
+        self._fill(scene, seeds, x, volume, stress, np.broadcast_to(J, len(x)))
 
-    def _fill(self, scene: Scene, seeds: list[Seeds]) -> None:
+    def _fill(self, scene: Scene, seeds: list[Seeds], x, volume, stress, J) -> None:
+        """Particles as they start: x [m], [n, dim]; volume [m^dim], [n]; stress along axes [Pa], [n, 3]; J, [n]."""
         kind = np.float64 if self.real == ti.f64 else np.float32
         particles = self.particles
-        x = np.concatenate([body.x for body in seeds])
         v = np.concatenate([initial_velocity(scene, k, body.x) for k, body in enumerate(seeds)])
-        volume = np.concatenate([body.volume for body in seeds])
         # already in cell order, so that the first sort has nothing to move and its kernel need not be compiled
         base = np.floor((x - np.array(self.grid.origin)) * self.grid.inv_dx - self.shape.shift).astype(int)
         order = np.argsort(np.ravel_multi_index(base.T, self.grid.nodes, mode="clip"), kind="stable")
         particles.reference.from_numpy(x[order].astype(kind))
         particles.v.from_numpy(v[order].astype(kind))
-        particles.volume.from_numpy((volume[order] / self.J_start).astype(kind))
-        particles.J.fill(self.J_start)
-        if self.confined:
+        particles.volume.from_numpy((volume / J)[order].astype(kind))
+        particles.J.from_numpy(J[order].astype(kind))
+        if stress.any():
             packed = np.zeros((len(x), PACKED_LENGTH[self.dim]), dtype=kind)
-            packed[:, :3] = -self.confinement
+            packed[:, :3] = stress[order]
             particles.sigma.from_numpy(packed)
         particles.id.from_numpy(order.astype(np.int32))
         if particles.varied:

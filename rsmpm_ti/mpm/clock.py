@@ -36,7 +36,7 @@ class Clock:
         pair = self._sim.scene.loading.platens
         if pair is None:
             return math.nan
-        lower, upper = self._sim.grid.travel.to_numpy()[pair[0].axis]
+        lower, upper = self._sim.grid.gone()[pair[0].axis]
         return float(lower - upper) / self._sim.scene.loading.height
 
     @property

@@ -48,6 +48,8 @@ def clear_nodes(sim: ti.template()):
 def speed_of(sim: ti.template(), b: ti.template(), factor):
     """Of a boundary along its axis, now [m/s]."""
     speed = sim.boundaries[b].speed * factor
+    if ti.static(sim.grid.settles):
+        speed *= ti.cast(sim.grid.pace[None], float)
     for held in ti.static(sim.grid.held):
         if ti.static(held.boundary == b):
             speed = ti.cast(sim.grid.velocity[held.axis, held.side], float)

@@ -29,7 +29,10 @@ def stress_on_nodes(sim: ti.template(), p):
 @ti.func
 def field_acceleration(sim: ti.template(), p, time):
     """b(X_p, t) of the scene's force field [m/s^2]; mass scaling leaves its force unchanged."""
-    return sim.lightness * sim.force_field.acceleration(sim.particles.reference[p], ti.cast(time, float))
+    now = ti.cast(time, float)
+    if ti.static(sim.grid.settles):
+        now *= ti.cast(sim.grid.pace[None], float)
+    return sim.lightness * sim.force_field.acceleration(sim.particles.reference[p], now)
 
 
 @ti.func

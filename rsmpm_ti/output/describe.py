@@ -7,6 +7,7 @@ from rsmpm_ti.checks import members
 from rsmpm_ti.output.fracture_tables import ACOUSTIC, CRACKS, FRAGMENTS
 from rsmpm_ti.records.events import EVENTS
 from rsmpm_ti.records.history_table import HISTORY
+from rsmpm_ti.records.reaction_table import REACTIONS
 from rsmpm_ti.records.snapshot import INSTANT, PARTICLES
 from rsmpm_ti.records.summary_table import RECORD, SUMMARY
 from rsmpm_ti.records.tables import Table
@@ -63,7 +64,7 @@ run at its own interval and write what it likes; see its docstring, and that of 
 opening.
 """
 
-TABLES = (HISTORY, EVENTS, CRACKS, FRAGMENTS, ACOUSTIC, PARTICLES, INSTANT, SUMMARY, RECORD)
+TABLES = (HISTORY, REACTIONS, EVENTS, CRACKS, FRAGMENTS, ACOUSTIC, PARTICLES, INSTANT, SUMMARY, RECORD)
 
 
 def anchor(table: Table) -> str:

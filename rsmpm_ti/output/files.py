@@ -21,6 +21,14 @@ def write_history(path: Path, history: np.ndarray) -> None:
     write_csv(path, history.dtype.names or (), history.tolist())
 
 
+def write_reactions(path: Path, reactions: np.ndarray | None) -> None:
+    """reactions.csv; without boundaries that of an earlier run is removed."""
+    if reactions is None:
+        path.unlink(missing_ok=True)
+    else:
+        write_csv(path, reactions.dtype.names or (), reactions.tolist())
+
+
 def write_events(path: Path, events: EventTable) -> None:
     write_table(path, EVENTS, events, events.x.shape[1])
 

@@ -14,7 +14,8 @@ class Result:
     """What a run leaves behind.
 
     `history`: structured array with the columns of history.csv; `summary`: the dict of summary.json; `events`:
-    EventTable; `fracture`: cracks, fragments and acoustic events measured on them; `snapshot`: last state.
+    EventTable; `fracture`: cracks, fragments and acoustic events measured on them; `snapshot`: last state; `reactions`:
+    structured array with the columns of reactions.csv, None where the scene has no boundaries.
     `stopped`: "" when the run reached the end of its schedule, else why it did not: by a rule of its own, because the
     specimen had burst, or by a signal, whose number is `signal`.
     """
@@ -27,6 +28,7 @@ class Result:
     out: Path | None
     stopped: str = ""
     signal: int = 0
+    reactions: np.ndarray | None = None
 
     def __repr__(self) -> str:
         """In a line: the arrays of a run would fill a terminal."""

@@ -21,7 +21,7 @@ SUMMARY = Table(
         _key("steps", "1", "steps taken"),
         _key("dt_s", "s", "time step, the last one where steps adapt"),
         _key("wall_s", "s", "wall time of the run without start-up, of all its parts if it was resumed"),
-        _key("compile_s", "s", "wall time of start-up: kernels are compiled or found kept"),
+        _key("compile_s", "s", "wall time of start-up: kernels are compiled or found kept, and bodies settle"),
         _key("painting_s", "s", "what of `wall_s` went to observers: copying particles out, waiting for the writer"),
         _key("painting_cpu_s", "s", "processor time of the process that paints and writes"),
         _key("particle_steps_per_s", "1/s", "particles times steps over the solver's time"),

@@ -5,7 +5,7 @@ import time
 from rsmpm_ti.analysis.fracture import Fracture, crack_lines, measure_fracture
 from rsmpm_ti.analysis.summary import summarise
 from rsmpm_ti.errors import ObserverError, SceneError
-from rsmpm_ti.output.files import write_events, write_history
+from rsmpm_ti.output.files import write_events, write_history, write_reactions
 from rsmpm_ti.output.folder import write_all
 from rsmpm_ti.output.fracture_tables import write_fracture
 from rsmpm_ti.records.files import plain, write_json
@@ -32,6 +32,7 @@ def finish(run, stopped: str, failure: Exception | None) -> Result:
     return Result(
         history=view.history, summary=summary, events=view.events, fracture=fracture, snapshot=view.snapshot,
         out=run.out, stopped=stopped, signal=0 if run.over else run.interrupt.signal,
+        reactions=run.history.reactions.table(),
     )  # fmt: skip
 
 
@@ -51,6 +52,7 @@ def _writes(run, view, fracture: Fracture, failure: Exception | None) -> list:
 
     writes = [
         lambda: write_history(run.out / "history.csv", view.history),
+        lambda: write_reactions(run.out / "reactions.csv", run.history.reactions.table()),
         lambda: write_events(run.out / "events.csv", view.events),
         lambda: write_fracture(run.out, fracture, view.history),
     ]

@@ -177,6 +177,10 @@ class Run:
         import taichi as ti
 
         self.started, self.painting_s, self.steps_before = time.perf_counter(), 0.0, self.clock.step
+        if not self.resumed and self.scene.loading.settle:
+            self._settle()
+            if not self.followed:
+                return
         if not self.resumed:
             self._look(self.view())  # without a row: no force has acted yet
             self.drive.advance(1)
@@ -187,6 +191,17 @@ class Run:
                 files.catch_up(self.view())
         ti.sync()
         self.started, self.painting_s, self.steps_before = time.perf_counter(), 0.0, self.clock.step
+
+    def _settle(self) -> None:
+        """A run that is stopped meanwhile has not begun: its checkpoint would be of no start."""
+        from rsmpm_ti.run.settling import settle
+        from rsmpm_ti.solver.history import History
+
+        self.followed = False
+        if settle(self.drive, self.interrupt):
+            self.followed = True
+            self.history = History(self.sim, self.clock, self.drive.survey, self.settings.columns)
+            self.history.zero(self.view())
 
     def _row(self) -> None:
         """Steps up to the next history row."""

@@ -27,12 +27,24 @@ def warnings_of(scene: Scene, numbers: dict, history: np.ndarray, events: EventT
     """Sentences, most of them with a remedy; numbers: of summary.json so far."""
     found = [
         *([_beside_the_middle(scene, events), _near_platen(scene, events)] if len(events) else []),
+        _settling(scene, events),
         _sudden_start(scene),
         _imbalance(numbers),
         _motion(numbers, history),
         numbers["numerical_fracture"] or "",
     ]
     return [sentence for sentence in found if sentence]
+
+
+def _settling(scene: Scene, events: EventTable) -> str:
+    """Failures before the clock started."""
+    failed = int(np.count_nonzero(events.time == 0.0)) if scene.loading.settle else 0
+    if not failed:
+        return ""
+    return (
+        f"{failed} failures while the bodies settled, booked at time 0: the rock does not bear what loads it at the "
+        f"start; lower that, or take it for the first result"
+    )
 
 
 def _sudden_start(scene: Scene) -> str:

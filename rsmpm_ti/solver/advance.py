@@ -54,7 +54,7 @@ class Drive:
             return
         remaining = min(steps, self.clock.total - self.clock.step)
         while remaining > 0:
-            remaining -= self._chunk(remaining)
+            remaining -= self.take(remaining)
 
     def _advance_to(self, time: float) -> None:
         """Equal steps to a time [s], as many as the latest look asks for, and after each look again."""
@@ -65,9 +65,9 @@ class Drive:
             remaining = math.ceil((time - clock.time) / limit - 1e-9)
             if remaining > 0:
                 clock.retime((time - clock.time) / remaining)
-                remaining -= self._chunk(remaining)
+                remaining -= self.take(remaining)
 
-    def _chunk(self, most: int) -> int:
+    def take(self, most: int) -> int:
         """Take steps, at most so many, look at the particles, and sort them if they need it; how many were taken."""
         # particles against nodes, which go at most as fast as the platens
         speed, way = max(self.survey.speed + self.sim.grid.fastest, 1e-30), SAFE_CELLS * self.sim.grid.dx

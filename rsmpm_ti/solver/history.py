@@ -12,6 +12,7 @@ from rsmpm_ti.records.tables import Column
 from rsmpm_ti.solver.extensometer import Extensometer
 from rsmpm_ti.solver.gauges import gauge_columns
 from rsmpm_ti.solver.guard import EnergyBooks, guard_energy, quiet_energy
+from rsmpm_ti.solver.reactions import ReactionRows
 from rsmpm_ti.solver.survey import Survey
 from rsmpm_ti.solver.view import View
 from rsmpm_ti.spec.load_cell import NO_LOAD
@@ -32,7 +33,14 @@ class History:
         self.books = EnergyBooks(start=start.kinetic + start.elastic, quiet=quiet_energy(sim)).after(start)
         self._impulse, self._time = start.impulse, clock.time
         self._cell, self.extensometer = sim.scene.loading.load_cell, Extensometer(sim)
-        self.load = NO_LOAD
+        self.load, self.reactions = NO_LOAD, ReactionRows(sim)
+        self._zero = np.zeros(len(self.columns))  # readings of instruments when the clock started
+
+    def zero(self, view: View) -> None:
+        """What is measured on the specimen counts from here: after bodies have settled."""
+        gauges = [gauge.column for gauge in self._sim.scene.loading.cell.gauges]
+        counted = {"lateral_strain", "volumetric_strain", *gauges}
+        self._zero = np.array([column.value(view) if column.name in counted else 0.0 for column in self.columns])
 
     @property
     def energy_start(self) -> float:
@@ -58,12 +66,15 @@ class History:
         row, if a column that was asked for fails.
         """
         survey = view.survey
-        if self._cell is not None and view.time > self._time:
-            forces = (survey.impulse - self._impulse) / (view.time - self._time)
+        went = view.time - self._time
+        forces = (survey.impulse - self._impulse) / (went if went > 0.0 else np.nan)
+        if self._cell is not None and went > 0.0:
             self.load = self._cell.read(forces, self._sim.scene.loading.confinement)
         else:
             self.load = NO_LOAD
-        self._rows.append(tuple(self._value(column, view) for column in self.columns))
+        zeros = zip(self.columns, self._zero, strict=True)
+        self._rows.append(tuple(self._value(column, view) - float(zero) for column, zero in zeros))
+        self.reactions.see(view.time, forces)
         self._impulse, self._time = survey.impulse, view.time
         self.books = self.books.after(survey)
         guard_energy(self._sim, self._clock, survey, self.books)
@@ -90,9 +101,13 @@ class History:
             **{f"history_energy_{name}": np.array(value) for name, value in asdict(self.books).items()},
             "history_impulse": np.array(self._impulse),
             "history_time": np.array(self._time),
+            "history_zero": self._zero,
+            **self.reactions.state(),
         }
 
     def resume(self, state: dict[str, np.ndarray]) -> None:
         self._rows, self._table = [tuple(row) for row in state["history"].tolist()], None
         self.books = EnergyBooks(**{name: float(state[f"history_energy_{name}"]) for name in asdict(self.books)})
         self._impulse, self._time = state["history_impulse"], float(state["history_time"])
+        self._zero = state["history_zero"]
+        self.reactions.resume(state)

@@ -134,6 +134,8 @@ def _specimen(scene) -> Box | Disc:
         problem = "start = Press stops the platens, so that there is no strain rate"
     elif loading.force_field is not None:
         problem = "loading.force_field drives the scene too"
+    elif loading.initial_stress is not None:
+        problem = "loading.initial_stress loads the rock before the platens do"
     elif len(scene.bodies) != 1 or scene.bodies[0].velocity is not None or scene.bodies[0].spin != 0.0:
         problem = "it knows one body that the platens alone set in motion"
     else:

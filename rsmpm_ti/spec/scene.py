@@ -24,6 +24,9 @@ from rsmpm_ti.rock.rock import Rock
 from rsmpm_ti.spec.boundaries import Fixed, Platen, Wall
 from rsmpm_ti.spec.confinement import check_confined_rock
 from rsmpm_ti.spec.domain import Domain
+from rsmpm_ti.spec.ground.gravity import ForceField, Gravity, check_gravity
+from rsmpm_ti.spec.ground.in_situ import InSitu, check_initial_stress
+from rsmpm_ti.spec.ground.settling import check_settling
 from rsmpm_ti.spec.load_cell import LoadCell
 from rsmpm_ti.spec.loading_start import Affine, AtRest, Press, Program, Ramp
 from rsmpm_ti.spec.mass_scaling import MAX_TIME_SCALE, estimate
@@ -69,9 +72,12 @@ class Loading:
     `mass_scaling.py`, and `Scene.time_scale` for the number.
     `width` is the loaded length [m] (area [m^2] in 3D) by which platen forces become nominal stress.
     body_force is an acceleration [m/s^2]; mass scaling leaves the force it makes unchanged. `force_field` is one that
-    depends on place and time: an object with a ti.func `acceleration(X, t)` of a particle's initial position [m] and
-    the time [s]. A scene file brings its own, so a scene with one cannot be run again from its record.
+    depends on place and time: `Gravity`, or an object with a ti.func `acceleration(X, t)` of a particle's initial
+    position [m] and the time [s]. A scene file brings its own, so a scene with one of these cannot be run again from
+    its record.
     confinement is a pressure [Pa] on every free surface, in which bodies start at rest (see `confinement.py`).
+    initial_stress is that of rock in the ground (see `ground/in_situ.py`). settle: bodies first come to rest under
+    what loads them at time 0, and only then the clock starts (see `ground/settling.py`).
     cell: what is measured, and gauges; what it leaves open comes from the platens (see `load_cell.py`).
     """
 
@@ -84,14 +90,14 @@ class Loading:
     time_scale: TimeScale = 1.0
     quasi_static: Annotated[float, Interval(ge=1e-6, le=1.0), Remedy("it is a fraction of the load")] = 0.01
     body_force: tuple[Annotated[Acceleration, Finite], ...] | None = None
-    force_field: object | None = None
+    force_field: Annotated[
+        Gravity | object | None, ForceField, Remedy("an object of your own has a ti.func acceleration(X, t)")
+    ] = None
     width: Annotated[LengthOrArea, Positive] | None = None
     confinement: Annotated[Pressure, NotNegative, Remedy("it is compression positive")] = 0.0
     cell: LoadCell = LoadCell()
-
-    def __post_init__(self):
-        if self.force_field is not None and not callable(getattr(self.force_field, "acceleration", None)):
-            raise refuse("loading.force_field", self.force_field, "an object with a ti.func acceleration(X, t)")
+    initial_stress: InSitu | None = None
+    settle: bool = False
 
     @property
     def platens(self) -> tuple[Platen, Platen] | None:
@@ -219,6 +225,9 @@ class Scene:
             remedy = "enlarge the domain: averages lie on a dense grid"
             raise refuse("domain.outside", "grow", "'stop' or 'drop' in rock with rock.nonlocal_mean", remedy)
         check_confined_rock(self.loading.confinement, self.rock.elasticity)
+        check_initial_stress(self)
+        check_gravity(self)
+        check_settling(self)
         check_bodies(self)
         check_loading(self)
         check_stop(self)

@@ -8,6 +8,7 @@ and checks a scene.json while it is written; in VS Code by
 import dataclasses
 import json
 
+import numpy as np
 from pydantic import ValidationError
 
 from rsmpm_ti.checks import adapter, refusal
@@ -16,14 +17,19 @@ from rsmpm_ti.spec.scene import Scene
 
 
 def to_plain(value):
-    """Dataclasses -> {"type": name, field: ...}; tuples -> lists; numbers and strings stay. By hand, as a scene file
-    may have brought objects of its own."""
+    """Dataclasses -> {"type": name, field: ...}; tuples and arrays -> lists; numbers and strings stay. By hand, as a
+    scene file may have brought objects of its own, which are told by their class and what they hold."""
     if dataclasses.is_dataclass(value):
         fields = {f.name: to_plain(getattr(value, f.name)) for f in dataclasses.fields(value)}
         return {"type": type(value).__name__, **fields}
     if isinstance(value, (tuple, list)):
         return [to_plain(v) for v in value]
-    return value
+    if isinstance(value, (np.ndarray, np.generic)):
+        return value.tolist()
+    if value is None or isinstance(value, (bool, int, float, str)):
+        return value
+    held = {name: v for name, v in getattr(value, "__dict__", {}).items() if not name.startswith("_")}
+    return {"type": type(value).__name__, **{name: to_plain(v) for name, v in held.items() if not callable(v)}}
 
 
 def from_plain(plain) -> Scene:

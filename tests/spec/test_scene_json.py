@@ -116,7 +116,7 @@ def test_scene_recorded_before_the_move_still_loads():
     """Written by the code of 2026-11-23; fields that are new since then have their defaults, others new names."""
     path = Path(__file__).parent / "recorded_disc_lab.json"
     recorded = json.loads(path.read_text())["scene"]
-    recorded["loading"]["cell"] = to_plain(LoadCell())
+    recorded["loading"] |= {"cell": to_plain(LoadCell()), "initial_stress": None, "settle": False}
     for platen in recorded["loading"]["boundaries"]:
         platen |= {"pulls": False, "force": None, "stress": None}
     recorded["schedule"]["stop_after_drop"] = None
@@ -169,3 +169,20 @@ def test_positions_of_a_shipped_scene_do_not_change_by_recording():
     for one, two in zip(scene.particles(), through_json(scene).particles(), strict=True):
         np.testing.assert_array_equal(one.x, two.x)
         np.testing.assert_array_equal(one.volume, two.volume)
+
+
+class Plain:
+    """As Taichi users write a force field: no dataclass."""
+
+    def __init__(self):
+        self.b, self.place, self._hidden = np.float64(9.81), np.array([1.0, 2.0]), object()
+
+    def acceleration(self, X, t):
+        return X
+
+
+def test_an_object_of_a_scene_files_own_is_told_by_its_class_and_what_it_holds():
+    scene = make(loading_force_field=Plain())
+    assert json.loads(json.dumps(to_plain(scene)))["loading"]["force_field"] == {
+        "type": "Plain", "b": 9.81, "place": [1.0, 2.0],
+    }  # fmt: skip
