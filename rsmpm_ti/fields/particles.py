@@ -51,7 +51,8 @@ class Particles:
         self.id = ti.field(ti.i32, count)
         self.affine, self.viscous = scene.transfer.affine, scene.rock.viscosity.acts
         self.breaking = ti.field(ti.i32, ())  # 0 while bodies settle and may not fail yet
-        self.breaking[None] = 1
+        if scene.loading.settle:
+            self.breaking[None] = 1
         self.breaks, self.varied = scene.rock.criterion.breaks, scene.rock.heterogeneity.varies
         real_fields = [self.reference, self.u, self.v, self.sigma, self.J, self.volume]
         whole_fields = [self.id]
