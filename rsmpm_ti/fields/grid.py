@@ -67,7 +67,8 @@ class Grid:
         self._began = ti.field(ti.f64, (dim, 2))  # travel at which the clock started: of bodies that settled first [m]
         self.settles = scene.loading.settle
         self.pace = ti.field(ti.f64, ())  # of time, and of sides that have a speed: 0 while bodies settle, then 1
-        self.pace[None] = 1.0
+        if self.settles:
+            self.pace[None] = 1.0
         self._now, self._start = ti.field(ti.f64, (dim, 3)), ti.field(ti.f64, (dim, 3))
         self.begin()
 

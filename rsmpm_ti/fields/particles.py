@@ -50,6 +50,9 @@ class Particles:
         self.J, self.volume = ti.field(real, count), ti.field(real, count)  # volume: stress-free [m^dim]
         self.id = ti.field(ti.i32, count)
         self.affine, self.viscous = scene.transfer.affine, scene.rock.viscosity.acts
+        self.breaking = ti.field(ti.i32, ())  # 0 while bodies settle and may not fail yet
+        if scene.loading.settle:
+            self.breaking[None] = 1
         self.breaks, self.varied = scene.rock.criterion.breaks, scene.rock.heterogeneity.varies
         real_fields = [self.reference, self.u, self.v, self.sigma, self.J, self.volume]
         whole_fields = [self.id]

@@ -18,7 +18,7 @@ class Clock:
         self._sim, self._pass_list = sim, ORDERS[scene.order]
         self.dt, self.total = scene.dt, scene.steps
         self.end = scene.t_end if scene.schedule.adaptive else self.total * self.dt  # [s]
-        self.factor = scene.loading.start.factor
+        self.factor, self.tracks = scene.loading.start.factor, True  # tracks: whether it looks for cracks
         self.step = 0
         self._since = 0, 0.0  # step and time at which steps of this length began
 
@@ -74,5 +74,5 @@ class Clock:
             factors = [self.factor(self._time_of(self.step + k + 0.5)) for k in range(chunk)]
             self._pass_list(self._sim, self.dt, self.time, factors)
             self.step += chunk
-            if self._sim.is_nonlocal and (self.step - 1) % self._sim.nonlocal_sums.interval == 0:
+            if self._sim.is_nonlocal and self.tracks and (self.step - 1) % self._sim.nonlocal_sums.interval == 0:
                 track_cracks(self._sim, self.time)

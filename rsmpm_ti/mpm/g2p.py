@@ -117,6 +117,8 @@ def new_stress(sim: ti.template(), start, stop, slot, what: ti.template(), dt, t
             found += must_check(sim, p)
     sim.ledger.viscous[slot] = sim.ledger.viscous[slot] + viscous
     if ti.static(sim.particles.breaks):
+        if ti.static(sim.grid.settles):
+            found *= sim.particles.breaking[None]
         if found > 0:  # else no particle here has failed or is about to
             for p in range(start, stop):
                 check_failure(sim, p, dt, time, slot)

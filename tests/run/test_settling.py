@@ -152,6 +152,14 @@ def test_rock_that_fails_on_the_way_is_said_and_booked_at_time_0():
     assert result.history["failed_shear"][0] + result.history["failed_tension"][0] == failed
 
 
+def test_rock_that_bears_the_load_at_rest_does_not_fail_on_the_way():
+    """At its base rho g H presses against nu/(1 - nu) of it: 255 of 307 kPa that it bears. Let go, it sees twice."""
+    sound = replace(ROCK, criterion=MohrCoulomb(cohesion=78e3, friction_angle=10.0, tensile_strength=4e5))
+    assert BASE < sound.criterion.strength(NU / (1.0 - NU) * BASE) < 1.5 * BASE
+    assert len(simulate(column(rock=sound), threads=1).events) == 0
+    assert len(simulate(column(rock=sound, loading={"settle": False}, steps=120), threads=1).events) > 0
+
+
 def test_a_body_that_nothing_holds_does_not_come_to_rest(tmp_path):
     with pytest.raises(UnstableRun, match=r"did not come to rest in \d+ steps of loading.settle|left the domain"):
         simulate(column(boundaries=SIDES), threads=1, out=tmp_path)
