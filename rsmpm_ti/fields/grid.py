@@ -56,7 +56,9 @@ class Grid:
         self.speeds = side_speeds(scene)
         self.held = held_sides(scene)
         self.followed = tuple(d for d in range(dim) if any(self.speeds[d]) or d in {side.axis for side in self.held})
-        # of an axis with one boundary the other side goes with it
+        bounded = tuple((abs(low) != -NO_WALL, abs(up) != -NO_WALL) for low, up in zip(lower, upper, strict=True))
+        self.alone = tuple(sides.index(True) if sum(sides) == 1 else -1 for sides in bounded)
+        # a plane for each side all the same
         self.rows = tuple(
             tuple(own if abs(own) != -NO_WALL else other + step for own, other, step in ((low, up, -1), (up, low, 1)))
             for low, up in zip(lower, upper, strict=True)
@@ -110,6 +112,10 @@ class Grid:
         for held in self.held:
             self._answered[held.axis, held.side] -= impulse[held.boundary, held.axis]
 
+    def spacing(self, axis: int) -> float:
+        """Of nodes along an axis, now [m]."""
+        return float(self._now.to_numpy()[axis, 2])
+
     @property
     def fastest(self) -> float:
         """Largest speed of a side, at full speed or now [m/s]."""
@@ -143,6 +149,8 @@ class Grid:
                 if ti.static(self.settles):
                     way *= self.pace[None]
                 self.travel[d, side] = self.travel[d, side] + way + self.velocity[d, side] * ti.cast(dt, ti.f64)
+            if ti.static(self.alone[d] >= 0):  # the side without a boundary goes with the other
+                self.travel[d, ti.static(1 - self.alone[d])] = self.travel[d, ti.static(self.alone[d])]
             for column in ti.static(range(3)):
                 self._start[d, column] = self._now[d, column]
             rows = ti.static(self.rows[d])

@@ -2,6 +2,8 @@
 
 from typing import NamedTuple
 
+import numpy as np
+
 from rsmpm_ti.spec.scene import Scene
 
 
@@ -31,15 +33,20 @@ def side_speeds(scene: Scene) -> tuple[tuple[float, float], ...]:
 def held_sides(scene: Scene) -> tuple[HeldSide, ...]:
     """Sides that a force moves.
 
-    Their platen has the mass of a row of cells of rock, of twice the loaded width: light beside the specimen, and yet
-    heavier than the rock of its nodes, since what they give back is known only after each step.
+    Their platen has the mass of two rows of cells of rock, as wide as the bodies that it may meet: light beside the
+    specimen, and yet heavier than the rock of its nodes, since what they give back is known only after each step.
     """
     found, width = [], scene.loading.width
     for k, boundary in enumerate(scene.loading.boundaries):
         if boundary.held:
-            assert width is not None  # checked with the scene
             inward = 1.0 if boundary.side == "lower" else -1.0
             force = boundary.force if boundary.force is not None else boundary.stress * width
-            mass = 2.0 * scene.density * scene.domain.dx * width
+            mass = 2.0 * scene.density * scene.domain.dx * _extent(scene, boundary.axis)
             found.append(HeldSide(boundary.axis, 0 if inward > 0.0 else 1, k, inward * force, mass))
     return tuple(found)
+
+
+def _extent(scene: Scene, axis: int) -> float:
+    """Of all bodies across an axis: a length [m], in 3D an area [m^2]."""
+    low, high = np.array([body.region.bounds() for body in scene.bodies]).transpose(1, 0, 2)
+    return float(np.prod(np.delete(high.max(axis=0) - low.min(axis=0), axis)))

@@ -2,6 +2,8 @@
 
 import math
 
+import numpy as np
+
 from rsmpm_ti.errors import SceneError, refuse
 
 PAPER_DT = 1.91e-5
@@ -38,15 +40,37 @@ HELD_STRAIN = 0.1
 """What a platen that a force moves may squeeze a specimen by, so that steps suit the grid that goes with it."""
 
 
+MEETING, LOOKS = 0.9, 2001
+"""What platens may come closer by, over their distance, and times at which their way is looked at."""
+
+
 def smallest_spacing(scene) -> float:
     """Of nodes in a run [m]: the grid goes with the platens, and shrinks as they come closer."""
     loading = scene.loading
     if any(boundary.held for boundary in loading.boundaries):
         return (1.0 - HELD_STRAIN) * scene.domain.dx
-    if loading.platens is None or not loading.strain_rate > 0.0:
+    if loading.platens is None or loading.height <= 0.0 or loading.strain_rate == 0.0:
         return scene.domain.dx
-    strain = scene.schedule.strain_end or loading.strain_rate * scene.t_end
-    return scene.domain.dx * max(1.0 - strain, 0.1)
+    closer = scene.schedule.strain_end if scene.schedule.strain_end is not None else _closest(scene)
+    return scene.domain.dx * (1.0 - max(0.0, closer))
+
+
+def _closest(scene) -> float:
+    """How far the platens come closer at most, over their distance, by their speeds and the start's factors.
+
+    Raises SceneError where they meet.
+    """
+    loading = scene.loading
+    times = np.linspace(0.0, scene.t_end, LOOKS)
+    factors = np.array([loading.start.factor(time) for time in times])
+    strain = loading.strain_rate * np.cumsum(0.5 * (factors[1:] + factors[:-1]) * np.diff(times))
+    if strain.max() > MEETING:
+        meet = times[1:][np.argmax(strain > MEETING)]
+        allowed = (
+            f"less than {meet:.4g} s: there the platens have come closer by {100.0 * MEETING:g} % of their distance"
+        )
+        raise refuse("schedule.t_end", scene.t_end, allowed, "slow them down, or let loading.start = Program hold them")
+    return max(0.0, float(strain.max()))
 
 
 def check_step(scene) -> None:

@@ -31,20 +31,26 @@ def find_gaps(sim: ti.template(), first, last, base, frame):
         if near:
             gap = ti.cast(NOTHING_NEAR, float)
             for k in range((last - first) & MAX_RUN):
-                half = 0.5 * edge_length(sim, sim.particles.volume[first + k]) / sim.grid.dx
-                gap = ti.min(gap, inward * (coordinates(sim, first + k, frame)[axis] - row) - half)
+                gap = ti.min(
+                    gap, inward * (coordinates(sim, first + k, frame)[axis] - row) - half(sim, first + k, frame, axis)
+                )
             for offset in ti.static(sim.stencil):
                 if ti.static(offset[axis] == 0):
                     ti.atomic_min(sim.contacts.gaps[plane][sim.contacts.across(plane, base + ti.Vector(offset))], gap)
 
 
 @ti.func
-def edge_length(sim: ti.template(), volume):
-    """Of a square or cube of a volume."""
+def half(sim: ti.template(), p, frame, axis: ti.template()):
+    """Half the length of a particle along an axis [cells], of a square or cube at the start.
+
+    What it has been squeezed by, J, is taken as squeezed along the axis, as beside a platen. Rock that has opened is no
+    longer than it was.
+    """
+    volume = sim.particles.volume[p]
     edge = ti.sqrt(volume)
     if ti.static(sim.dim == 3):
         edge = volume ** (1.0 / 3.0)
-    return edge
+    return 0.5 * edge * ti.min(sim.particles.J[p], 1.0) * frame[axis, 1]
 
 
 @ti.func

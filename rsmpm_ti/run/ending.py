@@ -2,6 +2,7 @@
 
 from rsmpm_ti.analysis.load_curve import FilteredLoad
 from rsmpm_ti.errors import BrokenApart
+from rsmpm_ti.method.time_step import HELD_STRAIN
 from rsmpm_ti.solver.guard import EnergyBooks
 from rsmpm_ti.solver.view import View
 
@@ -29,6 +30,21 @@ def fallen(load: FilteredLoad, view: View, drop: float | None) -> str:
     if drop is None or not failures or not load.fraction < 1.0 - drop:
         return ""
     return f"stopped: the load fell to {load.fraction:.2g} of its peak of {_peak(load)}, at {_now(view)}"
+
+
+def squeezed(view: View) -> str:
+    """Why the run ends here if a platen that a force moves has gone as far as steps bear, else "".
+
+    Rock that has failed under a held force does not stop the platen, and neither does a gap.
+    """
+    grid = view.sim.grid
+    axes = sorted({side.axis for side in grid.held})
+    if not axes or min(grid.spacing(axis) for axis in axes) > (1.0 - HELD_STRAIN) * grid.dx:
+        return ""
+    return (
+        f"stopped: a platen that a force moves has come {100.0 * HELD_STRAIN:g} % closer, at {_now(view)}; the "
+        f"specimen has given way, or nothing was in the way"
+    )
 
 
 def burst(load: FilteredLoad, view: View, books: EnergyBooks, error: BrokenApart) -> str:

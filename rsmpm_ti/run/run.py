@@ -233,9 +233,9 @@ class Run:
         return self.clock.done or bool(self.ending)
 
     def _fallen(self, view) -> str:
-        from rsmpm_ti.run.ending import fallen
+        from rsmpm_ti.run.ending import fallen, squeezed
 
-        return fallen(self.load, view, self.scene.schedule.stop_after_drop)
+        return fallen(self.load, view, self.scene.schedule.stop_after_drop) or squeezed(view)
 
     def view(self):
         from rsmpm_ti.solver.view import View

@@ -18,6 +18,9 @@ which all that was stored is motion."""
 NEAR_PLATEN = 1.5
 """Cells from a platen within which its row of nodes has a part in the stress: the reach of a B-spline."""
 
+SAME_LOAD = 0.005
+"""Fraction of the time to first failure within which failures count as first too: half a per cent of a steady load."""
+
 MIDDLE = 1.0 / 3.0
 """Part of a disc's loaded diameter, about its centre, on which a Brazilian test must break: there tension is within a
 per cent of that in the middle (Hondros 1959), and farther out the wedges below the platens begin."""
@@ -101,19 +104,24 @@ def _motion(numbers: dict, history: np.ndarray) -> str:
 
 
 def _near_platen(scene: Scene, events: EventTable) -> str:
-    """The first failure, against where the platens are then, after the travel of a steady speed at most."""
-    x, dx = events.x[0].astype(float), scene.domain.dx
+    """The first failures, against where the platens are then, after the travel of a steady speed at most.
+
+    Where all rock is as near to failure, as in an intact specimen, it fails everywhere at almost one load, and that the
+    first of all is beside a platen says nothing.
+    """
+    first = events.time <= (1.0 + SAME_LOAD) * events.time[0]
+    x, time, dx = events.x[first].astype(float), events.time[first], scene.domain.dx
     for platen in scene.loading.boundaries:
         if not isinstance(platen, Platen):
             continue
         inward = 1.0 if platen.side == "lower" else -1.0
-        travel = max(0.0, inward * platen.speed * float(events.time[0]))
-        distance = (inward * (float(x[platen.axis]) - platen.position) - travel) / dx
-        if distance < NEAR_PLATEN:
+        travel = np.maximum(0.0, inward * platen.speed * time)
+        distance = (inward * (x[:, platen.axis] - platen.position) - travel) / dx
+        if distance[0] < NEAR_PLATEN and np.mean(distance < NEAR_PLATEN) > 0.5:
             return (
-                f"the first failure is {max(0.0, distance):.2g} cells from the platen at {1e3 * platen.position:g} mm: "
-                f"within {NEAR_PLATEN:g} cells stress is that of the contact and the grid; the load at first failure "
-                f"is no strength of the rock"
+                f"the first failure is {max(0.0, float(distance[0])):.2g} cells from the platen at "
+                f"{1e3 * platen.position:g} mm: within {NEAR_PLATEN:g} cells stress is that of the contact and the "
+                f"grid; the load at first failure is no strength of the rock"
             )
     return ""
 

@@ -100,6 +100,8 @@ class LoadCell:
         pair, axis = loading.platens, self.axis
         if axis is None and pair is not None:
             axis = pair[0].axis
+        if axis is None:  # one platen against walls, or alone
+            axis = next((b.axis for b in loading.boundaries if isinstance(b, Platen)), None)
         if axis is None:
             return None
 

@@ -178,8 +178,8 @@ def _check_sides(loading) -> None:
 def _check_held(scene) -> None:
     loading = scene.loading
     for k, boundary in enumerate(loading.boundaries):
-        if boundary.held and loading.width is None:
-            raise SceneError("loading.width is missing: the mass of a platen that a force moves follows from it")
+        if boundary.held and boundary.stress is not None and loading.width is None:
+            raise SceneError(f"loading.width is missing: the force of boundaries[{k}] is its stress over that width")
         if boundary.held and scene.schedule.strain_end is not None:
             raise SceneError(f"boundaries[{k}] is moved by a force, so strain_end may never come: give t_end")
 

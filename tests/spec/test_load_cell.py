@@ -35,7 +35,9 @@ SUPPORTS = (
 def test_every_platen_of_a_side_counts_and_nothing_else():
     cell = Loading(boundaries=SUPPORTS, width=0.05).load_cell
     assert (cell.axis, cell.lower, cell.upper, cell.width) == (1, (0, 2), (1,), 0.05)
-    assert Loading(boundaries=(SUPPORTS[0], SUPPORTS[3])).load_cell is None
+    alone = Loading(boundaries=(SUPPORTS[0], SUPPORTS[3])).load_cell
+    assert (alone.axis, alone.lower, alone.upper) == (1, (0,), ()), "without a pair, the first platen's axis"
+    assert Loading(boundaries=SUPPORTS[4:]).load_cell is None
 
 
 def test_nominal_stress_is_the_sides_force_over_the_width_and_the_confining_pressure():

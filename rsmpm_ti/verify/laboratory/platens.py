@@ -100,6 +100,7 @@ def hit(dim: int, axis: int, dx: float, threads: int = 1) -> list[Row]:
     name = f"{dim}D, axis {axis}" + (f", {threads} threads" if threads > 1 else "")
     impulse = float(np.sum(load * np.diff(time, prepend=0.0)))
     leaves = result.snapshot.velocity[:, axis].mean()
+    # what its plane's nodes held when they stopped stays behind as swings: 1.3 dx/L of the speed
     rest = "first order in the cells: nodes of the plane stop at once, and a front of three cells leaves swings behind"
     return [
         relative(f"{name}: load of the hit [Pa]", DENSITY * C * SPEED, load[held].mean(), 0.03, why),
