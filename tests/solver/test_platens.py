@@ -14,8 +14,10 @@ from rsmpm_ti import (
     Domain,
     Hooke,
     Loading,
+    MohrCoulomb,
     Platen,
     Program,
+    Ramp,
     Rock,
     Scene,
     SceneError,
@@ -123,3 +125,62 @@ def test_a_force_that_pulls_needs_a_platen_that_can():
 def test_how_far_a_force_goes_is_no_end():
     with pytest.raises(SceneError, match="give t_end"):
         block(pair(force=1e3), Schedule(strain_end=0.1))
+
+
+def test_a_platen_alone_that_a_force_moves_takes_the_block_along():
+    """With F/(m + m_platen), and stress that falls linearly from F/A at the platen to none at the free end."""
+    platen, rise, end = Platen(axis=1, side="upper", position=SIDE, stress=5e6), 10.0 * TRANSIT, 60.0 * TRANSIT
+    scene = block((platen,), Schedule(t_end=end), start=Program(times=(rise,), factors=(1.0,)))
+    scene = replace(scene, domain=replace(scene.domain, lower=(-3.0 * DX, -20.0 * DX)))
+    result = simulate(scene, threads=1)
+    mass = DENSITY * SIDE * (SIDE + 2.0 * DX)
+    # of a force that rises by a ramp: a (t^2/2 - t r/2 + r^2/6)
+    way = 5e6 * SIDE / mass * (0.5 * end**2 - 0.5 * end * rise + rise**2 / 6.0)
+    assert -result.snapshot.displacement[:, 1].mean() == pytest.approx(way, rel=0.01)  # steps are whole
+    along, sigma = result.snapshot.x[:, 1] - result.snapshot.x[:, 1].min(), result.snapshot.sigma[:, 1, 1]
+    linear = -5e6 * DENSITY * SIDE * (along + 0.25 * DX) / mass
+    assert np.abs(sigma - linear).max() < 0.1 * 5e6, "the waves of the rise: a tenth of it and less"
+
+
+@pytest.mark.parametrize("width", [0.01 * SIDE, SIDE])
+def test_the_width_of_the_nominal_stress_decides_nothing_but_itself(width):
+    program = Program(times=(20.0 * TRANSIT,), factors=(1.0,))
+    scene = block(pair(force=10e6 * SIDE), Schedule(t_end=60.0 * TRANSIT), start=program)
+    scene = replace(scene, loading=replace(scene.loading, width=width))
+    force = simulate(scene, threads=1).history["force_top_N"]
+    assert force[len(force) // 2 :].mean() == pytest.approx(10e6 * SIDE, rel=5e-3)
+
+
+def test_a_specimen_that_gives_way_under_a_force_is_the_runs_end_and_a_result():
+    rock = Rock(
+        density=DENSITY,
+        elasticity=Hooke(E=E, nu=NU),
+        criterion=MohrCoulomb(cohesion=5.95e6, friction_angle=40.0, tensile_strength=2e6),
+    )
+    scene = block(pair(stress=40e6), Schedule(t_end=200.0 * TRANSIT), start=Ramp(time=60.0 * TRANSIT))
+    result = simulate(replace(scene, rock=rock), threads=1)
+    assert result.stopped.startswith("stopped: a platen that a force moves has come 10 % closer")
+    assert result.summary["first_failure_stress_Pa"] == pytest.approx(25.52e6, rel=0.03)  # a fast test: rho c v
+
+
+def test_platens_that_would_meet_are_refused_with_the_time():
+    with pytest.raises(SceneError, match=r"schedule\.t_end = .*must be less than 0\.00180\d s: there the platens"):
+        block(pair(speed=-10.0), Schedule(t_end=3e-3), start=Affine())
+    apart = Program(times=(1e-4, 3e-3), factors=(1.0, -3.0))
+    block(pair(speed=-10.0, pulls=True), Schedule(t_end=2e-3), start=apart)  # close in by 2.5 %, then go apart
+
+
+def test_a_platen_from_afar_meets_rock_where_it_is_though_its_grid_has_shrunk():
+    """Twelve cells of gap beside ten of rock: the grid is half as fine again when it arrives."""
+    gap, speed = 12.0 * DX, 20.0
+    arrives = gap / speed
+    scene = block(pair(), Schedule(t_end=1.05 * arrives, cfl=0.3, rows=2000))
+    lower, upper = scene.loading.boundaries
+    scene = replace(
+        scene,
+        domain=replace(scene.domain, upper=(scene.domain.upper[0], SIDE + gap)),
+        loading=replace(scene.loading, boundaries=(lower, replace(upper, position=SIDE + gap, speed=-speed))),
+    )
+    history = simulate(scene, threads=1).history
+    first = history["time_s"][np.argmax(history["force_top_N"] > 0.0)]
+    assert first == pytest.approx(arrives, abs=0.06 * DX / speed)  # a twentieth of a cell, and a row
