@@ -36,12 +36,15 @@ MESHES = {  # by name: dx [m], shape functions, transfer
     "dx 2 mm": (2e-3, QuadraticBSpline(), PicFlip()),
     "dx 1 mm": (1e-3, QuadraticBSpline(), PicFlip()),
     "dx 0.5 mm": (0.5e-3, QuadraticBSpline(), PicFlip()),
-    "GIMP": (1e-3, Gimp(), PicFlip()),
-    "linear": (1e-3, Linear(), PicFlip()),
-    "APIC": (1e-3, QuadraticBSpline(), Apic()),
-    "GIMP, APIC": (1e-3, Gimp(), Apic()),
-    "linear, APIC": (1e-3, Linear(), Apic()),
+    "GIMP": (2e-3, Gimp(), PicFlip()),
+    "linear": (2e-3, Linear(), PicFlip()),
+    "APIC": (2e-3, QuadraticBSpline(), Apic()),
+    "GIMP, APIC": (2e-3, Gimp(), Apic()),
+    "linear, APIC": (2e-3, Linear(), Apic()),
 }
+
+FINEST = "dx 0.5 mm"
+"""Of the paper's rock alone: four minutes."""
 
 PRESSURES = (0.0, 10e6, 20e6, 40e6)
 """Of the jacket [Pa]."""
@@ -83,8 +86,10 @@ def ucs(full: bool) -> Outcome:
     """Every rock, every mesh. quick: the paper's rock and a granite."""
     wanted = [("paper", "dx 2 mm"), ("granite", "dx 2 mm")]
     if full:
-        wanted = [(rock, mesh) for rock in ("paper", "granite") for mesh in MESHES]
-        wanted += [(rock, "dx 1 mm") for rock in ("mudstone", "quartzite")]
+        wanted = [
+            (rock, mesh) for rock in ("paper", "granite") for mesh in MESHES if (rock, mesh) != ("granite", FINEST)
+        ]
+        wanted += [(rock, "dx 2 mm") for rock in ("mudstone", "quartzite")]
     rows = [
         _row(f"{rock}, {mesh}", specimen(ROCKS[rock], mesh=mesh), strength(ROCKS[rock]), 0.01, SWINGS)
         for rock, mesh in wanted
