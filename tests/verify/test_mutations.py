@@ -72,7 +72,13 @@ MUTATIONS = {
         "weibull_size",
     ),
     "confined rock without stress out of the plane": (
-        [("fields/state.py", "packed[:, :3] = -self.confinement", "packed[:, :2] = -self.confinement")],
+        [
+            (
+                "fields/state.py",
+                "-self.confinement * np.ones((len(x), 3))",
+                "-self.confinement * np.array([[1.0, 1.0, 0.0]] * len(x))",
+            )
+        ],
         "triaxial",
     ),
     "work of a weight as if it fell freely": (

@@ -11,9 +11,10 @@ from rsmpm_ti.verify.__main__ import main
 from rsmpm_ti.verify.catalogue import CASES, MODULES
 from rsmpm_ti.verify.strength.weibull import strips
 
-LONGER = {"manufactured_b", "uniaxial"}
+LONGER = {"manufactured_b", "uniaxial", "lab_friction", "lab_triaxial"}
 """Cases of the quick tier that the suite leaves to its own longer tier: a minute, and `manufactured_a` is like the one;
-the hard case `uniform_failure` comes to the same strength as the other in 10 s."""
+the hard case `uniform_failure` comes to the same strength as the other in 10 s. Half a minute: the jacket, which
+`triaxial` has, and friction."""
 
 QUICK = [
     pytest.param(name, marks=[pytest.mark.validation] * (name in LONGER)) for name, case in CASES.items() if case.quick

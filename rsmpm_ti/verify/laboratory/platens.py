@@ -29,8 +29,8 @@ E, DENSITY = 17e9, 2600.0
 C = math.sqrt(E / DENSITY)
 """Speed of waves along the bar [m/s]."""
 
-LENGTH, CELLS = 40e-3, 4
-"""Of the bar [m], and its width in cells."""
+LENGTH, WIDTH = 40e-3, 8e-3
+"""Of the bar [m]. Between plane ends it buckles at a strain of (pi^2/3)(WIDTH/LENGTH)^2 = 13 % (Euler)."""
 
 SQUEEZES = (0.01, 0.02, 0.049)
 """Strains at which the load is read; five rows of particles have then been run over by a platen that stays behind."""
@@ -50,17 +50,17 @@ def bar(
     def corner(along: float, across: float) -> tuple[float, ...]:
         return tuple(along if d == axis else across for d in range(dim))
 
-    side, top = CELLS * dx, LENGTH + gap * dx
+    top = LENGTH + gap * dx
     platens = (
         Platen(axis=axis, side="lower", position=0.0, speed=speeds[0]),
         Platen(axis=axis, side="upper", position=top, speed=speeds[1]),
     )
     return Scene(
         title="a bar between platens",
-        domain=Domain(lower=corner(0.0, -2.0 * dx), upper=corner(top, side + 2.0 * dx), dx=dx),
-        bodies=(Body(region=Box(lower=corner(0.0, 0.0), upper=corner(LENGTH, side)), **body),),
+        domain=Domain(lower=corner(0.0, -2.0 * dx), upper=corner(top, WIDTH + 2.0 * dx), dx=dx),
+        bodies=(Body(region=Box(lower=corner(0.0, 0.0), upper=corner(LENGTH, WIDTH)), **body),),
         rock=Rock(density=DENSITY, elasticity=Hooke(E=E, nu=0.0), criterion=Unbreakable()),
-        loading=Loading(boundaries=platens, start=start or AtRest(), width=side ** (dim - 1)),
+        loading=Loading(boundaries=platens, start=start or AtRest(), width=WIDTH ** (dim - 1)),
         schedule=schedule,
     )
 
@@ -139,7 +139,8 @@ def platens(full: bool) -> Outcome:
         (3, 2, 2e-3),
     ] * full
     rows = [row for way in ways for test in (squeeze, hit, comes) for row in test(*way)]
-    rows += hit(2, 1, 2e-3, threads=2)
+    if full:
+        rows += hit(2, 1, 2e-3, threads=2)
 
     def draw(figure):
         axes = figure.subplots()
