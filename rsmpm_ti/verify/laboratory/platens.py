@@ -100,13 +100,16 @@ def hit(dim: int, axis: int, dx: float, threads: int = 1) -> list[Row]:
     name = f"{dim}D, axis {axis}" + (f", {threads} threads" if threads > 1 else "")
     impulse = float(np.sum(load * np.diff(time, prepend=0.0)))
     leaves = result.snapshot.velocity[:, axis].mean()
-    # what its plane's nodes held when they stopped stays behind as swings: 1.3 dx/L of the speed
-    rest = "first order in the cells: nodes of the plane stop at once, and a front of three cells leaves swings behind"
+    # docs/references.md, section 2: a front is late by 0.41 (3 b n)^(1/3) cells after n, b = 1/4 for B-splines; that
+    # part of the impulse goes into swings, and half as much again from the nodes that stop at once
+    cells = back * C / dx
+    late = 1.5 * 0.41 * (0.75 * cells) ** (1.0 / 3.0) / cells
+    rest = "the front lags, and what lags stays behind as swings: references, section 2"
     return [
         relative(f"{name}: load of the hit [Pa]", DENSITY * C * SPEED, load[held].mean(), 0.03, why),
-        relative(f"{name}: impulse [Pa s]", 2.0 * DENSITY * LENGTH * SPEED, impulse, 2.0 * dx / LENGTH, rest),
+        relative(f"{name}: impulse [Pa s]", 2.0 * DENSITY * LENGTH * SPEED, impulse, late, rest),
         at_most(f"{name}: pull [Pa]", float(-load.min()), 0.0, "it pushes alone: to the last bit"),
-        relative(f"{name}: leaves at [m/s]", SPEED, float(leaves), 2.0 * dx / LENGTH, rest),
+        relative(f"{name}: leaves at [m/s]", SPEED, float(leaves), 2.0 * late, rest),
     ]
 
 
