@@ -61,3 +61,12 @@ def shown(value: object) -> str:
 def short(text: str) -> str:
     """The beginning of a text from outside."""
     return text if len(text) <= MAX_SHOWN else f"{text[:MAX_SHOWN]}..."
+
+
+def reason(error: BaseException) -> str:
+    """Why something failed, in a few words."""
+    if isinstance(error, MemoryError):
+        return "memory has run out"
+    if isinstance(error, OSError) and error.strerror:
+        return error.strerror
+    return short(f"{type(error).__name__}: {error}")

@@ -3,12 +3,13 @@
 import argparse
 import math
 import os
+import signal
 import sys
 import warnings
 from dataclasses import replace
 from pathlib import Path
 
-from rsmpm_ti.errors import RockWarning, SceneError, UnstableRun, shown
+from rsmpm_ti.errors import RockWarning, SceneError, UnstableRun, reason, shown
 from rsmpm_ti.spec.loader import about, available, find, load_scene, scene_name
 from rsmpm_ti.spec.mass_scaling import estimate
 from rsmpm_ti.spec.review.placement import area_errors
@@ -174,6 +175,12 @@ def main(arguments: list[str] | None = None) -> int:
     except UnstableRun as error:
         print(f"rsmpm_ti: the run became unstable: {error}", file=sys.stderr)
         return 3
+    except (MemoryError, OSError) as error:  # no memory, descriptors or disk to begin with
+        print(f"rsmpm_ti: cannot be run: {reason(error)}", file=sys.stderr)
+        return 2
+    except KeyboardInterrupt:
+        print("rsmpm_ti: stopped by Ctrl-C; what is complete is kept", file=sys.stderr)
+        return 128 + signal.SIGINT
 
 
 def say(sentence: object) -> None:

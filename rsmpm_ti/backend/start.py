@@ -23,10 +23,13 @@ def start_taichi(precision: str, arch: str, threads: int | None):
     # never ti.gpu: it crashes without Vulkan, or runs silently on a software Vulkan with wrong numbers
     wanted = [ti.cuda, ti.cpu] if arch == "cuda" else ti.cpu
     with contextlib.redirect_stdout(io.StringIO()):  # it announces its backend there
-        ti.init(
-            arch=wanted, default_fp=real, cpu_max_num_threads=threads or os.cpu_count() or 1, log_level=ti.ERROR,
-            cfg_optimization=False,  # LLVM does the same; its time grows faster than the kernel: 20 s for one of 6 s
-        )  # fmt: skip
+        try:
+            ti.init(
+                arch=wanted, default_fp=real, cpu_max_num_threads=threads or os.cpu_count() or 1, log_level=ti.ERROR,
+                cfg_optimization=False,  # LLVM does the same; its time outgrows the kernel: 20 s for one of 6 s
+            )  # fmt: skip
+        except RuntimeError as error:  # it reserves a GiB of addresses, for example
+            raise SceneError(f"Taichi cannot be started: {error}; give this process more memory") from None
     if arch == "cuda" and ti.lang.impl.current_cfg().arch != ti.cuda:
         raise SceneError("arch = 'cuda' is refused: no usable CUDA device was found; use --arch cpu")
     return real, arch == "cuda"

@@ -1,7 +1,6 @@
 """The folder of a run: made ready before anything is computed, and filled with tables when the run has ended."""
 
 import os
-from collections.abc import Callable
 from pathlib import Path
 
 from rsmpm_ti import __version__
@@ -66,17 +65,3 @@ def write_record(out: Path, scene: Scene, name: str, precision: str) -> None:
         write_json(out / "scene.json", record)
     except OSError as error:
         raise _unwritable(out, error) from None
-
-
-def write_all(writes: list[Callable[[], None]]) -> None:
-    """Do every write, also after one has failed, so that what can be kept is; then raise SceneError for the first."""
-    problem = None
-    for write in writes:
-        try:
-            write()
-        except SceneError as error:
-            problem = problem or error
-        except OSError as error:
-            problem = problem or SceneError(f"{error.filename or 'a file'} cannot be written: {error.strerror}")
-    if problem is not None:
-        raise SceneError(f"{problem}; what is complete is kept: make room and go on with --resume") from None

@@ -1,5 +1,6 @@
 """The pictures of one run: frames, the movie that is made of them, and summary.png."""
 
+import contextlib
 from collections.abc import Sequence
 from pathlib import Path
 
@@ -25,7 +26,7 @@ class Gallery:
             try:
                 self._movie = Movie(self._out / f"{wanted.name}.mp4")
             except RuntimeError as error:  # no encoder: frames still come
-                self.warning = str(error)
+                self.warning = f"no movie is written: {error}"
 
     def paint(self, number: int, snapshot: Snapshot, history: np.ndarray) -> dict[str, np.ndarray]:
         """Frames by kind, for `write`."""
@@ -43,8 +44,20 @@ class Gallery:
             self._film(*(read_png(frame_path(self._out, kind, number)) for kind in ("stress", "cracks")))
 
     def _film(self, stress: np.ndarray, cracks: np.ndarray) -> None:
+        """A movie that fails, for whatever reason, costs the movie alone."""
         if self._movie is not None:
-            self._movie.add(stress, cracks)
+            try:
+                self._movie.add(stress, cracks)
+            except Exception as error:
+                self._unfilmed(error)
+
+    def _unfilmed(self, error: Exception) -> None:
+        assert self._movie is not None
+        self.warning = f"no movie is written: {error or type(error).__name__}"
+        self.discard()
+        with contextlib.suppress(OSError):  # of a run that goes on: it would show the run's first part alone
+            self._movie.path.unlink(missing_ok=True)
+        self._movie = None
 
     def discard(self) -> None:
         """Remove what there is of a movie that cannot be finished."""
@@ -66,7 +79,10 @@ class Gallery:
         [s]; peak: the crack pattern at the largest load, with its own lines.
         """
         if self._movie is not None:
-            self._movie.close()
+            try:
+                self._movie.close()
+            except Exception as error:
+                self._unfilmed(error)
         summary_picture(
             self._out / "summary.png", snapshot, history, self.painters["cracks"], self._wanted.title, lines, acoustic,
             peak, peak_lines,

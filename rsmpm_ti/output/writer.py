@@ -1,5 +1,10 @@
 """The solver's end of the process that paints and writes while the solver runs.
 
+It may be killed, stopped, or starved of memory, disk or descriptors at any moment, and so may the encoder, a process of
+its own. The first such problem is kept for whoever asks (`check`); later orders are dropped, so that those who give
+them need not know. And nobody waits for ever: it gives a sign of life every second (`writer_process.py`), and without
+one for `PATIENCE` it is ended.
+
 A child process, not a fork and not `multiprocessing`: Taichi does not survive a fork, and a user's script that calls
 `simulate` has no main guard. Orders are done one after another, so a checkpoint is on disk only when every frame before
 it is, and a run can go on from it without a gap.
@@ -9,9 +14,13 @@ import contextlib
 import json
 import os
 import pickle
+import signal
 import subprocess
 import sys
 import tempfile
+import threading
+import time
+from collections.abc import Callable
 from concurrent.futures import Future, ThreadPoolExecutor
 from pathlib import Path
 
@@ -26,16 +35,25 @@ WAITING_BYTES = 512 * 2**20
 """Orders that may wait for the child, which is behind while much fails: each holds a copy of the particles. One order
 may be larger."""
 
-REPORT = "rsmpm_ti writer: "
-"""Begins the line by which the child says how it went; Taichi prints to the same pipe."""
+REPORT, ALIVE = "rsmpm_ti writer: ", "rsmpm_ti writer is alive"
+"""The line by which the child says how it went begins with the one, a sign of life is the other; Taichi prints to the
+same pipe."""
+
+PATIENCE = 45.0
+"""Seconds without a sign of life after which the child counts as stuck, while it is waited for. Its longest silence,
+compiling its kernels beside a busy solver, is a few."""
 
 
 class Writer:
     """Paints and writes the files of one run in a process of its own. `warning`, `cpu_s`: known after `close`."""
 
-    def __init__(self, wanted: Commission):
-        """Starts the child, which gets ready while the caller goes on. Raises SceneError where it cannot be started."""
-        self.out, self.warning, self.cpu_s = wanted.out, "", 0.0
+    def __init__(self, wanted: Commission, hurried: Callable[[], bool] = lambda: False):
+        """Starts the child, which gets ready while the caller goes on. Raises SceneError where it cannot be started.
+
+        hurried: whether whoever waits for the child wants to wait no longer.
+        """
+        self.out, self.warning, self.cpu_s, self.problem = wanted.out, "", 0.0, ""
+        self._hurried = hurried
         package = str(Path(rsmpm_ti.__file__).resolve().parent.parent)
         paths = os.pathsep.join(filter(None, (package, os.environ.get("PYTHONPATH"))))
         try:
@@ -48,6 +66,10 @@ class Writer:
             )  # fmt: skip
         except OSError as error:
             raise SceneError(f"the process that paints and writes cannot be started: {error}") from None
+        self._report: dict = {}
+        self._heard = time.monotonic()
+        self._listener = threading.Thread(target=self._listen, daemon=True)
+        self._listener.start()
         self._sender = ThreadPoolExecutor(max_workers=1)
         self._pending: list[tuple[int, Future]] = []  # bytes of each order on its way
         self._order("open", wanted)
@@ -68,60 +90,94 @@ class Writer:
         self._order("checkpoint", arrays)
 
     def close(self, *last) -> None:
-        """Wait for everything, the movie and summary.png last; arguments as of `Gallery.close`."""
+        """Wait for everything, the movie and summary.png last; arguments as of `Gallery.close`. Raises as `check`."""
         self._order("close", *last)
-        self._settle(0)
+        self._wait(lambda: self._child.poll() is not None)
         self._end()
+        self.check()
+
+    def check(self) -> None:
+        """Raise SceneError where something could not be done, with the reason that the child gave."""
+        if self.problem:
+            raise SceneError(f"{self.out} cannot be written: {self.problem}")
 
     def abandon(self) -> None:
         """End the child without finishing the movie; what it has written stays. Never raises."""
         self._sender.shutdown(wait=False, cancel_futures=True)
-        self._child.kill()  # which also frees a sender that waits for it to read
-        self._child.wait()
+        self._kill()
         self._sender.shutdown()
         for pipe in filter(None, (self._child.stdin, self._child.stdout, self._errors)):
             with contextlib.suppress(OSError):  # what was not sent cannot be
                 pipe.close()
 
     def _order(self, *order) -> None:
-        """Hand an order over, beside the caller; wait while too much is on its way.
-
-        Raises SceneError, with the reason that the child gives, where it has ended.
-        """
+        """Hand an order over, beside the caller; wait while too much is on its way. After a problem: nothing."""
+        if self.problem:
+            return
         message = pickle.dumps(order, protocol=5)
-        self._settle(WAITING_BYTES - len(message))
-        self._pending.append((len(message), self._sender.submit(self._send, message)))
+        self._wait(lambda: self._on_the_way() + len(message) <= WAITING_BYTES or not self._pending)
+        if not self.problem:
+            self._pending.append((len(message), self._sender.submit(self._send, message)))
 
     def _send(self, message: bytes) -> None:
         assert self._child.stdin is not None
         self._child.stdin.write(message)
         self._child.stdin.flush()
 
-    def _settle(self, most: int) -> None:
-        """Wait until at most so many bytes are on their way."""
-        while self._pending and (self._pending[0][1].done() or sum(size for size, _ in self._pending) > most):
-            try:
-                self._pending.pop(0)[1].result()
-            except OSError:  # a broken pipe: the child has ended, and `_end` says why
+    def _on_the_way(self) -> int:
+        """Bytes of orders that the child has not taken. Ends the child's account where one cannot be sent."""
+        while self._pending and self._pending[0][1].done():
+            if self._pending.pop(0)[1].exception() is not None:  # a broken pipe: the child has ended or is about to
+                self._wait(lambda: self._child.poll() is not None)
                 self._end()
+        return sum(size for size, _ in self._pending)
+
+    def _wait(self, done: Callable[[], bool]) -> None:
+        """Until done, or there is a problem: the child is stuck, or whoever waits is in a hurry."""
+        while not self.problem and not done():
+            if self._hurried():
+                self._give_up("given up at a second signal")
+            elif time.monotonic() - self._heard > PATIENCE:
+                self._give_up(f"the process that paints and writes gave no sign of life for {PATIENCE:g} s")
+            time.sleep(0.01)
+
+    def _listen(self) -> None:
+        """Signs of life and the report, until the child's end."""
+        assert self._child.stdout is not None
+        with contextlib.suppress(OSError, ValueError):  # closed by `abandon`
+            for line in self._child.stdout:
+                self._heard = time.monotonic()
+                if line.startswith(REPORT.encode()):
+                    self._report = json.loads(line[len(REPORT) :])
 
     def _end(self) -> None:
-        """Read the child's report; raise SceneError if it did not do everything."""
-        self._sender.shutdown(cancel_futures=True)
-        self._pending.clear()
-        output, _ = self._child.communicate()
-        lines = [line for line in output.decode(errors="replace").splitlines() if line.startswith(REPORT)]
-        report = json.loads(lines[-1].removeprefix(REPORT)) if lines else {}
-        problem = report.get("problem", "") or self._silence()
-        self._errors.close()
+        """The child has ended: read its report."""
+        if self.problem:
+            return
+        self._kill()  # an encoder that has outlived it
+        self._listener.join(PATIENCE)
+        problem = self._report.get("problem", "") if self._report else self._silence()
         if problem:
-            raise SceneError(f"{self.out} cannot be written: {problem}")
-        self.warning, self.cpu_s = report["warning"], report["cpu_s"]
+            self._give_up(problem)
+        else:
+            self.warning, self.cpu_s = self._report["warning"], self._report["cpu_s"]
+            self.abandon()
+
+    def _give_up(self, problem: str) -> None:
+        self.problem = problem
+        self._pending.clear()
+        self.abandon()
+
+    def _kill(self) -> None:
+        """The child and what it has started, which are a session of their own."""
+        with contextlib.suppress(OSError):
+            if hasattr(os, "killpg"):
+                os.killpg(self._child.pid, signal.SIGKILL)
+        self._child.kill()  # which also frees a sender that waits for it to read
+        self._child.wait()
 
     def _silence(self) -> str:
-        """Why a child that reported nothing has ended; "" if it ended well."""
-        if self._child.returncode == 0:
-            return ""
+        """Why a child that reported nothing has ended."""
         self._errors.seek(0)
         said = [line.strip() for line in self._errors.read().decode(errors="replace").splitlines() if line.strip()]
         reason = f": {said[-1]}" if said else ""

@@ -1,22 +1,29 @@
 """python -m rsmpm_ti.output.writer_process: paints and writes what a solver orders by standard input; see writer.py."""
 
+import contextlib
 import json
 import os
 import pickle
+import signal
 import sys
+import threading
 import time
 from concurrent.futures import ThreadPoolExecutor
 from typing import Any
 
 from rsmpm_ti.backend.start import start_taichi
 from rsmpm_ti.output.files import write_checkpoint, write_pvd, write_vtu
-from rsmpm_ti.output.writer import REPORT
+from rsmpm_ti.output.writer import ALIVE, REPORT
 
 NICENESS = 10
 """The solver goes first; painting takes the time that its threads leave."""
 
 WAITING = 4
 """Painted frames, VTU files and checkpoints that may wait for the thread that writes them."""
+
+
+SIGN_S = 1.0
+"""Seconds between two signs of life, which say that this process is neither stopped nor starved."""
 
 
 class Desk:
@@ -67,16 +74,17 @@ def main() -> int:
     """Status 0 when closed or when the solver is gone, 1 with a report of the problem otherwise."""
     if hasattr(os, "nice"):
         os.nice(NICENESS)
+    threading.Thread(target=_live, daemon=True).start()
     desk, problem, order = Desk(), "", ("",)
     while order[0] != "close" and not problem:
         try:
             order = pickle.load(sys.stdin.buffer)
         except (EOFError, pickle.UnpicklingError):
             # The solver was killed. What is complete stays; what waits is dropped, for the run may go on at once.
-            os._exit(0)
+            _vanish()
         try:
             getattr(desk, order[0])(*order[1:])
-        except Exception as error:  # whatever it is, the solver must hear of it in one line
+        except BaseException as error:  # whatever it is, the solver must hear of it in one line
             desk.stop()
             problem = (getattr(error, "strerror", None) or f"{type(error).__name__}: {error}") + _file(error)
     if problem and desk.gallery is not None:
@@ -86,7 +94,22 @@ def main() -> int:
     return 1 if problem else 0
 
 
-def _file(error: Exception) -> str:
+def _live() -> None:
+    """Until the solver, or this process, is gone."""
+    with contextlib.suppress(OSError, ValueError):
+        while True:
+            print(ALIVE, flush=True)
+            time.sleep(SIGN_S)
+
+
+def _vanish() -> None:
+    """Leave at once, and take the encoder along. Never returns."""
+    if hasattr(os, "killpg") and os.getpgrp() == os.getpid():  # else the group is that of whoever started it
+        os.killpg(0, signal.SIGKILL)
+    os._exit(0)
+
+
+def _file(error: BaseException) -> str:
     name = getattr(error, "filename", None)
     return f" ({name})" if name else ""
 

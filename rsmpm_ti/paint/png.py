@@ -7,7 +7,6 @@ from pathlib import Path
 
 import fpng
 import numpy as np
-from PIL import Image
 
 from rsmpm_ti.records.files import complete
 
@@ -36,5 +35,6 @@ def text_chunk(key: str, note: str) -> bytes:
 
 def read_png(path: str | os.PathLike) -> np.ndarray:
     """What `write_png` wrote, uint8 [h, w, 3]."""
-    with Image.open(path) as picture:
-        return np.array(picture.convert("RGB"))
+    from imageio.v3 import imread
+
+    return imread(path, plugin="pillow", mode="RGB")

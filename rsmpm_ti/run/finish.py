@@ -1,74 +1,101 @@
-"""The end of a run: what broke is measured, numbers are summed up, and everything that can be written is written."""
+"""The end of a run: what cannot be made again is written first, then what broke is measured, painted and summed up.
+
+So a failure, or an impatient user, costs what comes later: pictures and the tables of cracks, which `--resume` makes
+again from the last checkpoint.
+"""
 
 import time
 
 from rsmpm_ti.analysis.fracture import Fracture, crack_lines, measure_fracture
 from rsmpm_ti.analysis.summary import summarise
 from rsmpm_ti.errors import ObserverError, SceneError
-from rsmpm_ti.output.files import write_events, write_history, write_reactions
-from rsmpm_ti.output.folder import write_all
+from rsmpm_ti.output.files import write_checkpoint, write_events, write_history, write_reactions
 from rsmpm_ti.output.fracture_tables import write_fracture
 from rsmpm_ti.records.files import plain, write_json
 from rsmpm_ti.records.result import Result
+from rsmpm_ti.run.attempts import Attempts
 from rsmpm_ti.run.warnings import kinetic_share_after, warnings_of
 from rsmpm_ti.solver.damping import damping_said, viscous_energy
 
 
-def finish(run, stopped: str, failure: Exception | None) -> Result:
-    """Measure, write and sum up a `Run` that has ended; stopped: why before its end, failure: by which exception."""
-    speed, view = run.speed(), run.view()
-    fracture = measure_fracture(run.scene, view.history, view.events, view.snapshot)
-    summary = {}
+def finish(run, stopped: str, failure: Exception | None) -> tuple[Result, SceneError | None]:
+    """Write, measure and sum up a `Run` that has ended, and say what of this failed first.
 
-    def sum_up() -> None:  # last, since it counts the time of everything else
-        summary.update(plain(numbers_of(run, view, fracture, speed, stopped)))  # the same in Python as in the file
-
-    if run.out is None:
-        sum_up()
-    else:
-        write_all(
-            [*_writes(run, view, fracture, failure), sum_up, lambda: write_json(run.out / "summary.json", summary)]
-        )
-    return Result(
+    stopped: why the run ended before its end; failure: by which exception.
+    """
+    end = End(run, stopped, failure)
+    if run.out is not None:
+        end.write_tables()
+    fracture = end.attempt(measure_fracture, *end.broken, what="what broke cannot be measured")
+    if run.out is not None:
+        end.write_rest(fracture)
+    summary = end.attempt(end.numbers, fracture, what="the run cannot be summed up") or {}
+    if run.out is not None and summary:
+        end.attempt(write_json, run.out / "summary.json", summary)
+    view = end.view
+    result = Result(
         history=view.history, summary=summary, events=view.events, fracture=fracture, snapshot=view.snapshot,
-        out=run.out, stopped=stopped, signal=0 if run.over else run.interrupt.signal,
-        reactions=run.history.reactions.table(),
+        out=run.out, stopped=stopped, signal=0 if run.over else run.interrupt.signal, reactions=end.reactions,
     )  # fmt: skip
+    return result, end.attempt.problem
 
 
-def _writes(run, view, fracture: Fracture, failure: Exception | None) -> list:
-    """What is left to be written, in order."""
+class End:
+    """The last state of a run, and everything that is written of it."""
 
-    def timed(work, *arguments) -> None:
-        start = time.perf_counter()
-        work(*arguments)
-        run.painting_s += time.perf_counter() - start
+    def __init__(self, run, stopped: str, failure: Exception | None):
+        self.run, self.stopped, self.failure, self.attempt = run, stopped, failure, Attempts()
+        self.speed, self.view = run.speed(), run.view()
+        self.reactions = run.history.reactions.table()
+        self.broken = run.scene, self.view.history, self.view.events, self.view.snapshot
+        self._arrays: dict | None = None
 
-    def checkpoint() -> None:
-        try:
-            timed(run.write_checkpoint)
-        except ObserverError as error:  # by what it remembers; the rest is still written
-            run.late_failure = error
+    def write_tables(self) -> None:
+        """The run itself: its tables, a checkpoint and its numbers so far."""
+        out, view, attempt, writer = self.run.out, self.view, self.attempt, self.run.writer
+        attempt(write_history, out / "history.csv", view.history)
+        attempt(write_reactions, out / "reactions.csv", self.reactions)
+        attempt(write_events, out / "events.csv", view.events)
+        # of a state that is sound: a user's observer and the writer say nothing against it, other failures do
+        elsewhere = isinstance(self.failure, ObserverError) or (isinstance(self.failure, SceneError) and writer.problem)
+        if self.run.followed and (self.failure is None or elsewhere):
+            self._arrays = attempt(self.run.checkpoint_arrays)
+        if self._arrays is not None:
+            attempt(self._timed, writer.checkpoint, self._arrays)
+        numbers = attempt(self.numbers, None, what="the run cannot be summed up")
+        if numbers:
+            attempt(write_json, out / "summary.json", numbers)
 
-    writes = [
-        lambda: write_history(run.out / "history.csv", view.history),
-        lambda: write_reactions(run.out / "reactions.csv", run.history.reactions.table()),
-        lambda: write_events(run.out / "events.csv", view.events),
-        lambda: write_fracture(run.out, fracture, view.history),
-    ]
-    of_user = isinstance(failure, ObserverError)  # the run itself was sound
-    if failure is None or of_user:  # else the last one is of a sound state, or nothing more can be written
-        writes.append(checkpoint)
-    if of_user or not isinstance(failure, SceneError):
-        peak = run.largest.pattern
+    def write_rest(self, fracture: Fracture | None) -> None:
+        """What is measured and painted, while the checkpoint is on its way to the disk."""
+        if fracture is not None:
+            self.attempt(write_fracture, self.run.out, fracture, self.view.history)
+        if not self.run.writer.problem:
+            self.attempt(self._paint, fracture, what="summary.png cannot be painted")
+        if self.run.writer.problem and self._arrays is not None:  # it may have got no further than to be ordered
+            self.attempt(write_checkpoint, self.run.out, self._arrays)
+
+    def _paint(self, fracture: Fracture | None) -> None:
+        run, view, peak = self.run, self.view, self.run.largest.pattern
         lines = [] if peak is None else crack_lines(run.scene, view.events, peak)
-        last = view.snapshot, view.history, fracture.lines, fracture.acoustic.time, peak, lines
-        writes.append(lambda: timed(run.writer.close, *last))
-    return writes
+        measured = ([], []) if fracture is None else (fracture.lines, fracture.acoustic.time)
+        self._timed(run.writer.close, view.snapshot, view.history, *measured, peak, lines)
+
+    def _timed(self, work, *arguments) -> None:
+        start = time.perf_counter()
+        try:
+            work(*arguments)
+        finally:
+            self.run.painting_s += time.perf_counter() - start
+
+    def numbers(self, fracture: Fracture | None) -> dict:
+        """The same in Python as in the file."""
+        return plain(numbers_of(self.run, self.view, fracture, self.speed, self.stopped))
 
 
-def numbers_of(run, view, fracture: Fracture, speed: float, stopped: str) -> dict:
-    """summary.json, whose keys `records/summary_table.py` declares."""
+def numbers_of(run, view, fracture: Fracture | None, speed: float, stopped: str) -> dict:
+    """summary.json, whose keys `records/summary_table.py` declares. Without a Fracture those of what broke are missing:
+    it has not been measured yet, or could not be."""
     writer = run.writer
     what_broke = summarise(run.scene, view.history, view.events, run.history.energy_start)
     numbers = {
@@ -83,11 +110,11 @@ def numbers_of(run, view, fracture: Fracture, speed: float, stopped: str) -> dic
         "time_scale": run.scene.time_scale,
         **what_broke,
         "kinetic_share_after": kinetic_share_after(view.history, what_broke["first_failure_time_s"]),
-        **fracture.numbers(),
+        **(fracture.numbers() if fracture is not None else {}),
         **run.drive.dropped.numbers(),
         "stopped": stopped,
     }
-    beside = [writer.warning] if writer is not None and writer.warning else []
+    beside = [said for said in (writer.warning, writer.problem) if said] if writer is not None else []
     found = warnings_of(run.scene, numbers, view.history, view.events)
     damped = damping_said(run.scene, view.history, run.history.energy_start, viscous_energy(run.sim))
     return numbers | {"warnings": [*run.said, *found, *damped, *beside]}

@@ -9,10 +9,11 @@ from typing import Any
 
 from rsmpm_ti.analysis.load_curve import FilteredLoad
 from rsmpm_ti.backend.start import start_taichi
-from rsmpm_ti.errors import BrokenApart, ObserverError, RockWarning, SceneError, UnstableRun, refuse
+from rsmpm_ti.errors import BrokenApart, ObserverError, RockWarning, SceneError, UnstableRun, reason, refuse
 from rsmpm_ti.output.folder import prepare, write_record
 from rsmpm_ti.records.result import Progress, Result
 from rsmpm_ti.records.tables import Column
+from rsmpm_ti.run.attempts import KEPT
 from rsmpm_ti.run.finish import finish
 from rsmpm_ti.run.interrupt import Interrupt, asked_to_stop
 from rsmpm_ti.run.settings import CHECKPOINT_S, Settings
@@ -42,8 +43,9 @@ def simulate(
     start where there is none, of a run that was stopped or done: its end, rows and output may be others now, nothing
     else; checkpoint_every: wall time between checkpoints [s]; progress: called after each history row; columns: more
     columns of the history (`Column`); observers: more observers (`Observer`), whose states a checkpoint keeps, to be
-    given again, in the same order, to a run that resumes. Ctrl-C and SIGTERM stop after the step and still write what
-    there is. A specimen that bursts after its peak ends the run, which is then a result.
+    given again, in the same order, to a run that resumes. Ctrl-C, SIGTERM and SIGHUP stop after the step, and what
+    there is is still written; a second one does not wait for pictures. A specimen that bursts after its peak ends the
+    run, which is then a result.
     What is hard to believe in the scene comes as RockWarning, a sentence each, before it starts.
     Raises SceneError for input that cannot be run, before anything compiles, and when files cannot be written any
     more, and after writing everything up to there UnstableRun, or ObserverError where a column or observer raised.
@@ -59,15 +61,17 @@ def simulate(
     said = review(scene, seeds)
     for sentence in said:
         warnings.warn(sentence, RockWarning, stacklevel=2)
-    if out is None:
-        return Run(scene, seeds, None, settings, said=said).go()
-    if resume:
-        from rsmpm_ti.run.checkpoint import check_end, read
+    interrupt = Interrupt()
+    with asked_to_stop(interrupt):  # from here on a signal does not find a run half begun
+        if out is None:
+            return Run(scene, seeds, None, settings, interrupt, said=said).go()
+        if resume:
+            from rsmpm_ti.run.checkpoint import check_end, read
 
-        kept = read(Path(out), settings.identity(scene))
-        if kept is not None:
-            check_end(kept, scene)
-    return Run(scene, seeds, prepare(scene, out, keep=kept is not None), settings, kept, said).go()
+            kept = read(Path(out), settings.identity(scene))
+            if kept is not None:
+                check_end(kept, scene)
+        return Run(scene, seeds, prepare(scene, out, keep=kept is not None), settings, interrupt, kept, said).go()
 
 
 def _tuple(entries):
@@ -82,8 +86,10 @@ class Run:
     to believe, in sentences.
     """
 
-    def __init__(self, scene: Scene, seeds, out: Path | None, settings: Settings, kept=None, said=()):
-        self.scene, self.out, self.settings, self.said = scene, out, settings, said
+    def __init__(
+        self, scene: Scene, seeds, out: Path | None, settings: Settings, interrupt: Interrupt, kept=None, said=()
+    ):
+        self.scene, self.out, self.settings, self.interrupt, self.said = scene, out, settings, interrupt, said
         self.writer: Any = None  # an output.writer.Writer where files are written, imported only then: it needs Taichi
         self.begun = time.perf_counter()
         if out is not None:  # first, since it gets ready while kernels compile here
@@ -92,7 +98,7 @@ class Run:
 
             write_record(out, scene, settings.name, settings.precision)
             volume = float(sum(body.volume.sum() for body in seeds))
-            self.writer = Writer(commission(scene, settings.name, out, volume))
+            self.writer = Writer(commission(scene, settings.name, out, volume), lambda: self.interrupt.hurried)
         try:
             self._set_up(seeds, kept)
         except BaseException:
@@ -111,7 +117,7 @@ class Run:
         self.row_steps = self.scene.row_steps
         self.watches = self._observers()
         self.wall_before, self.resumed = 0.0, kept is not None
-        self.interrupt, self.ending, self.followed = Interrupt(), "", True
+        self.ending, self.followed = "", True
         self.load = FilteredLoad(self.scene)
         if kept is not None:
             progress = restore(kept, self.drive, self.history)
@@ -148,22 +154,25 @@ class Run:
         stopped = ""
         failure: ObserverError | UnstableRun | SceneError | None = None
         try:
-            with asked_to_stop(self.interrupt):
-                try:
-                    self._begin()
-                    while not self.over and not self.interrupt.signal:
-                        self._row()
-                    stopped = self.ending
-                    if not self.over:
-                        stopped = f"interrupted after step {self.clock.step} of {self.clock.total}"
-                except ObserverError as error:
-                    failure = ObserverError(f"{error}; at step {self.clock.step}, t = {self.clock.time:.6g} s")
-                    failure.__cause__, stopped = error.__cause__, str(failure)
-                except (UnstableRun, SceneError) as error:
-                    stopped, failure = str(error), error
-            self.late_failure: ObserverError | None = None
-            result = finish(self, stopped, failure)
-            failure = failure or self.late_failure
+            try:
+                self._begin()
+                while not self.over and not self.interrupt.signal:
+                    self._row()
+                stopped = self.ending
+                if not self.over:
+                    stopped = f"interrupted after step {self.clock.step} of {self.clock.total}"
+            except ObserverError as error:
+                failure = ObserverError(f"{error}; at step {self.clock.step}, t = {self.clock.time:.6g} s")
+                failure.__cause__, stopped = error.__cause__, str(failure)
+            except (UnstableRun, SceneError) as error:
+                stopped, failure = str(error), error
+            except (MemoryError, OSError) as error:
+                stopped = f"{reason(error)}; at step {self.clock.step}, t = {self.clock.time:.6g} s"
+                failure = SceneError(f"the run cannot go on: {stopped}; {KEPT}")
+                failure.__cause__ = error
+            result, late = finish(self, stopped, failure)
+            if not self.interrupt.hurried:  # else what was given up was asked for
+                failure = failure or late
         except BaseException:
             self._abandon()
             raise
@@ -224,6 +233,8 @@ class Run:
         if self.ending:
             view.fraction = 1.0  # who looks at the end looks now
         self._look(view)
+        if self.writer is not None and self.writer.problem:  # asked now that everybody has seen this row
+            raise SceneError(f"{self.out} cannot be written: {self.writer.problem}; {KEPT}")
         if self.settings.progress is not None:
             self.settings.progress(self._progress(view))
 
@@ -253,14 +264,14 @@ class Run:
     def write_checkpoint(self) -> None:
         """Not of a state that cannot be followed: the one before it stays."""
         if self.followed:
-            self.checkpoint()
+            self.writer.checkpoint(self.checkpoint_arrays())
 
-    def checkpoint(self) -> None:
+    def checkpoint_arrays(self) -> dict:
         from rsmpm_ti.run.checkpoint import observer_arrays, take
 
         parts, arrays = observer_arrays(self.watches)
         progress = {"observers": parts, "wall_s": self.wall()}
-        self.writer.checkpoint(take(self.drive, self.history, progress, self.settings.identity(self.scene)) | arrays)
+        return take(self.drive, self.history, progress, self.settings.identity(self.scene)) | arrays
 
     def wall(self) -> float:
         return self.wall_before + time.perf_counter() - self.started

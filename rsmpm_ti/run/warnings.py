@@ -34,7 +34,7 @@ def warnings_of(scene: Scene, numbers: dict, history: np.ndarray, events: EventT
         _sudden_start(scene),
         _imbalance(numbers),
         _motion(numbers, history),
-        numbers["numerical_fracture"] or "",
+        numbers.get("numerical_fracture") or "",
     ]
     return [sentence for sentence in found if sentence]
 

@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 from PIL import Image
 
-from rsmpm_ti.paint.movie import Movie, gif, movie_size
+from rsmpm_ti.paint.encoder import movie_size
+from rsmpm_ti.paint.movie import Movie, gif
 from rsmpm_ti.paint.palette import crack_palette
 from rsmpm_ti.paint.png import write_png
 
@@ -37,8 +38,35 @@ def test_movie_without_frames_writes_nothing_and_without_encoder_says_so(tmp_pat
     assert Movie(tmp_path / "empty.mp4").close() is None
     assert list(tmp_path.iterdir()) == []
     monkeypatch.setitem(sys.modules, "imageio_ffmpeg", None)
-    with pytest.raises(RuntimeError, match="pip install imageio imageio-ffmpeg"):
+    with pytest.raises(RuntimeError, match="pip install imageio-ffmpeg"):
         Movie(tmp_path / "none.mp4")
+
+
+HANDS = {
+    "ends at once": ("exit 1", "ended with status 1"),
+    "says why": ("cat > /dev/null; echo no space >&2; exit 1", "status 1: no space"),
+    "takes nothing": ("sleep 1000", "did not answer for 0.5 s"),
+    "never finishes": ("cat > /dev/null; sleep 1000", "did not answer for 0.5 s"),
+    "makes nothing": ("cat > /dev/null; exit 0", "No such file"),
+}
+
+
+@pytest.mark.parametrize("kind", HANDS)
+def test_encoder_that_fails_is_named_in_one_line_and_leaves_nothing(tmp_path, monkeypatch, kind):
+    pytest.importorskip("imageio_ffmpeg")
+    program = tmp_path / "ffmpeg"
+    program.write_text(f"#!/bin/sh\n{HANDS[kind][0]}\n")
+    program.chmod(0o755)
+    monkeypatch.setenv("IMAGEIO_FFMPEG_EXE", str(program))
+    monkeypatch.setattr("rsmpm_ti.paint.encoder.PATIENCE", 0.5)
+    movie = Movie(tmp_path / "out" / "cube.mp4")
+    frame = np.zeros((400, 400, 3), dtype=np.uint8)  # larger than a pipe holds
+    with pytest.raises(RuntimeError, match=HANDS[kind][1]) as told:
+        for _ in range(2):
+            movie.add(frame, frame)
+        movie.close()
+    movie.discard()
+    assert "\n" not in str(told.value) and not list((tmp_path / "out").iterdir())
 
 
 def test_movie_fits_full_hd_and_is_never_enlarged():

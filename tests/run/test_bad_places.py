@@ -18,12 +18,12 @@ from writer_orders import NO_ROWS, started
 
 from rsmpm_ti.backend import kernel_cache
 from rsmpm_ti.errors import SceneError
-from rsmpm_ti.output import folder as run_folder
 from rsmpm_ti.output.files import CHECKPOINTS, write_checkpoint
 from rsmpm_ti.paint.movie import Movie
 from rsmpm_ti.paint.png import write_png
 from rsmpm_ti.records.files import write_json
 from rsmpm_ti.run import checkpoint
+from rsmpm_ti.run.attempts import KEPT, Attempts
 from rsmpm_ti.run.settings import Settings
 from rsmpm_ti.scene import main
 from rsmpm_ti.spec import scene_checks
@@ -117,15 +117,26 @@ def test_disk_that_fills_up_ends_the_writer_in_one_line_and_keeps_what_is_comple
 
 
 def test_every_write_is_tried_and_the_first_failure_is_told(tmp_path):
-    written = []
-    with pytest.raises(SceneError, match="No space left on device; what is complete is kept") as refused:
-        run_folder.write_all([full, lambda: written.append(1), full, lambda: written.append(2)])
-    assert written == [1, 2] and "\n" not in str(refused.value)
+    written, attempt = [], Attempts()
+    for work in (full, lambda: written.append(1), lambda: {}["key"], lambda: written.append(2)):
+        attempt(work)
+    assert written == [1, 2]
+    assert str(attempt.problem) == f"a file cannot be written: No space left on device; {KEPT}"
+
+
+@pytest.mark.parametrize("error, said", [(MemoryError(), "memory has run out"), (KeyError("a"), "KeyError: 'a'")])
+def test_whatever_fails_at_the_end_is_told_in_one_line(error, said):
+    def fail():
+        raise error
+
+    attempt = Attempts()
+    assert attempt(fail, what="it cannot be measured") is None
+    assert str(attempt.problem) == f"it cannot be measured: {said}; {KEPT}"
 
 
 def test_movie_is_given_up_where_its_encoder_is_no_program(tmp_path, monkeypatch):
     monkeypatch.setenv("IMAGEIO_FFMPEG_EXE", str(tmp_path / "ffmpeg"))
-    with pytest.raises(RuntimeError, match="no movie is written, .* is no program"):
+    with pytest.raises(RuntimeError, match="no encoder, .* is no program"):
         Movie(tmp_path / "cube.mp4")
 
 

@@ -184,7 +184,7 @@ def test_unstable_run_says_where_and_keeps_what_there_is(tmp_path):
     import rsmpm_ti.run.run as module
 
     settings = module.Settings(name="intact", threads=1, progress=spoil)
-    spoil.run = module.Run(scene, scene.particles(), module.prepare(scene, tmp_path), settings)
+    spoil.run = module.Run(scene, scene.particles(), module.prepare(scene, tmp_path), settings, module.Interrupt())
     with pytest.raises(UnstableRun, match=r"not finite or left the domain at step \d+, t = .* mm"):
         spoil.run.go()
     assert len(table(tmp_path / "history.csv")) > 10
@@ -232,7 +232,7 @@ def test_a_flying_fragment_is_sorted_before_it_leaves_its_slabs_reach():
 
     import rsmpm_ti.run.run as module
 
-    look.run = module.Run(scene, scene.particles(), None, module.Settings(threads=1, progress=look))
+    look.run = module.Run(scene, scene.particles(), None, module.Settings(threads=1, progress=look), module.Interrupt())
     result = look.run.go()
     assert result.snapshot.displacement[-1, 0] > 0.01  # it has crossed more than ten cells
     assert farthest <= REACH - scene.shape.width  # the rows by which particles may stray

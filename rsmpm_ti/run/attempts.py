@@ -1,0 +1,34 @@
+"""What is done at the end of a run although something before it may have failed: a full disk, memory that is short."""
+
+from collections.abc import Callable
+from typing import Any
+
+from rsmpm_ti.errors import ObserverError, SceneError, reason
+
+KEPT = "what is complete is kept; go on with --resume"
+
+
+class Attempts:
+    """Does one thing after another, also after one has failed. `problem`: the first failure; None where all is well."""
+
+    def __init__(self):
+        self.problem: SceneError | None = None
+
+    def __call__(self, work: Callable, *arguments, what: str = "a file cannot be written") -> Any:
+        """The result of work(*arguments), None where it failed; what: the name of such a failure, where it has none."""
+        try:
+            return work(*arguments)
+        except ObserverError as error:
+            self._take(error)
+        except SceneError as error:
+            self._take(SceneError(f"{error}; {KEPT}"))
+        except OSError as error:
+            self._take(SceneError(f"{error.filename or 'a file'} cannot be written: {reason(error)}; {KEPT}"))
+        except Exception as error:  # whatever it is, what comes after it is still done
+            failure = SceneError(f"{what}: {reason(error)}; {KEPT}")
+            failure.__cause__ = error
+            self._take(failure)
+        return None
+
+    def _take(self, problem: SceneError) -> None:
+        self.problem = self.problem or problem
