@@ -75,7 +75,7 @@ class BValue:
 
 
 def b_value(magnitude: np.ndarray) -> BValue | None:
-    """Maximum-likelihood b of magnitudes [a]; None for fewer than FEWEST of them at or above completeness.
+    """Maximum-likelihood b of magnitudes [a]; None for fewer than MIN_PARTICLES of them at or above completeness.
 
     b = log10(e) / (mean(M) - (M_c - dM/2)) (Aki 1965, Utsu 1965), M_c the middle of the fullest bin of width dM, the
     maximum of the curvature of N(>= M) (Wiemer & Wyss 2000); error 2.30 b^2 sqrt(sum (M - mean)^2 / (n (n - 1))) (Shi &

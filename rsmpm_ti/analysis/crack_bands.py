@@ -70,8 +70,8 @@ class Crack:
 def find_bands(events, spacing: float) -> tuple[list[np.ndarray], csr_array]:
     """Cracks as rows of an EventTable, each in order of time, the crack that began first coming first; and the graph.
 
-    Failures within REACH initial spacings [m] of each other are joined; sets of fewer than FEWEST particles are no
-    cracks.
+    Failures within REACH initial spacings [m] of each other are joined; sets of fewer than MIN_PARTICLES particles are
+    no cracks.
     """
     graph = neighbour_graph(events.x, REACH * spacing)
     if len(events) == 0:
@@ -145,7 +145,7 @@ def carried(
 
 
 def openings(cracks: list[Crack], events, snapshot: Snapshot, dx: float) -> list[np.ndarray]:
-    """Opening and slip at each point of each crack's path at the snapshot, list of [k, 2] [m] (see `aperture.jumps`).
+    """Opening and slip at each point of each crack's path at the snapshot, list of [k, 2] [m] (see `crack_opening.jumps`).
 
     Paths are places at failure, so they are first taken back to where their particles were seeded, as the intact
     particles are, by those of them that have not left the domain; NaN where all have.

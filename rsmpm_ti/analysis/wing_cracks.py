@@ -50,7 +50,7 @@ def _wing(x: np.ndarray, slit: Slit, spacing: float, sign: float) -> Wing | None
 
 def leaving_angle(points: np.ndarray, start: np.ndarray, outward: np.ndarray) -> float:
     """Angle between `outward` and the line fitted to a crack's places within FIT_LENGTH of its start, degrees in
-    [0, 180]; NaN for fewer than FEWEST such places. points [e, 2], start [2] [m]; outward: unit vector [2]."""
+    [0, 180]; NaN for fewer than MIN_PARTICLES such places. points [e, 2], start [2] [m]; outward: unit vector [2]."""
     close = points[np.linalg.norm(points - start, axis=1) < FIT_LENGTH]
     if len(close) < MIN_PARTICLES:
         return float("nan")
