@@ -145,7 +145,7 @@ def carried(
 
 
 def openings(cracks: list[Crack], events, snapshot: Snapshot, dx: float) -> list[np.ndarray]:
-    """Opening and slip at each point of each crack's path at the snapshot, list of [k, 2] [m] (see `crack_opening.jumps`).
+    """Opening and slip at each point of each crack's path at the snapshot, list of [k, 2] [m] (`crack_opening.jumps`).
 
     Paths are places at failure, so they are first taken back to where their particles were seeded, as the intact
     particles are, by those of them that have not left the domain; NaN where all have.
