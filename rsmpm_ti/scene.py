@@ -11,6 +11,7 @@ from pathlib import Path
 from rsmpm_ti.errors import RockWarning, SceneError, UnstableRun, shown
 from rsmpm_ti.spec.loader import about, available, find, load_scene, scene_name
 from rsmpm_ti.spec.mass_scaling import estimate
+from rsmpm_ti.spec.review.memory import memory
 from rsmpm_ti.spec.review.placement import area_errors
 from rsmpm_ti.spec.review.sentences import review
 from rsmpm_ti.spec.scene import Scene
@@ -87,7 +88,7 @@ def build(options: argparse.Namespace) -> Scene:
 
 def describe(scene: Scene, threads: int | None = None) -> str:
     """What would be run, as `--check` prints it; threads: all by default."""
-    from rsmpm_ti.run.forecast import memory, solving_time
+    from rsmpm_ti.run.forecast import solving_time
 
     seeds = scene.particles()
     count = sum(len(body.x) for body in seeds)

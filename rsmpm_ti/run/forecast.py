@@ -1,8 +1,4 @@
-"""What a run will take, told before it starts: memory at its largest, and time.
-
-Memory is that of the two processes of a run, the one that solves and the one that paints: Python with its libraries,
-the fields, and copies of the particles on their way to files. Measured as the largest resident memory of runs of 20 000
-to 320 000 particles, on Linux.
+"""What a run will take of time and of the disk, told before it starts; for memory see `spec/review/memory.py`.
 
 Time is particles x steps x the time of one particle's step, in units of a loop over numbers that is timed here and now:
 how fast a machine does the one says how fast it does the other. It is the solver's alone, on cores that nobody else
@@ -14,15 +10,6 @@ import time
 import numpy as np
 
 from rsmpm_ti.method.shape import Gimp
-from rsmpm_ti.spec.scene_checks import memory_of_nodes, memory_of_particles
-
-SOLVER_MB, NONLOCAL_MB, PAINTER_MB = {2: 245.0, 3: 290.0}, 20.0, 345.0
-"""Largest resident memory of a run of no particles: Python, Taichi and its compiler, by dimension; what kernels of a
-nonlocal mean add; the process that paints."""
-
-COPIES = {2: 85, 3: 135}
-"""Numbers of 8 bytes per particle in the copies that are there at one time, by dimension; the painter has no more of
-them in 3D, where it shows a slab."""
 
 UNITS = {(2, 2): 17.0, (2, 3): 28.0, (3, 2): 56.0, (3, 3): 123.0}
 """Time of a particle's step over that of the loop's, by dimension and nodes of the shape function per axis."""
@@ -37,16 +24,6 @@ THREAD = 0.75
 """What each further thread adds, in units of the first (docs/speed.md)."""
 
 NUMBERS, ROUNDS = 20_000, 10
-
-
-def memory(scene, count: int) -> tuple[float, float]:
-    """Largest resident memory of the process that solves and of the one that paints [bytes]; count: particles."""
-    rock = scene.rock
-    acts = rock.criterion.breaks and rock.nonlocal_mean.acts
-    held = 8.0 * count
-    fields = memory_of_particles(scene, count) + memory_of_nodes(scene)
-    solver = 1e6 * (SOLVER_MB[scene.dim] + NONLOCAL_MB * acts) + fields + COPIES[scene.dim] * held
-    return solver, 1e6 * PAINTER_MB + COPIES[2] * held
 
 
 def particle_step(scene) -> float:

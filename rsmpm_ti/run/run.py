@@ -64,7 +64,7 @@ def simulate(
     if resume:
         from rsmpm_ti.run.checkpoint import check_end, read
 
-        kept = read(Path(out), settings.identity(scene))
+        kept = read(Path(out), scene, seeds, settings)
         if kept is not None:
             check_end(kept, scene)
     return Run(scene, seeds, prepare(scene, out, keep=kept is not None), settings, kept, said).go()

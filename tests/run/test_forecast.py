@@ -10,8 +10,9 @@ import pytest
 
 from rsmpm_ti import load_scene
 from rsmpm_ti.backend.start import start_taichi
-from rsmpm_ti.run.forecast import memory, solving_time
+from rsmpm_ti.run.forecast import solving_time
 from rsmpm_ti.solver.advance import Drive
+from rsmpm_ti.spec.review.memory import memory
 
 BLOCK = Path(__file__).resolve().parents[1] / "block_3d.py"
 
