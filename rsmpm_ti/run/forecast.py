@@ -6,10 +6,13 @@ uses. Where much cracks a step takes up to a quarter more; what it takes to star
 """
 
 import time
+from pathlib import Path
 
 import numpy as np
 
+from rsmpm_ti.fields.particles import stored
 from rsmpm_ti.method.shape import Gimp
+from rsmpm_ti.spec.review.machine import free_disk
 
 UNITS = {(2, 2): 17.0, (2, 3): 28.0, (3, 2): 56.0, (3, 3): 123.0}
 """Time of a particle's step over that of the loop's, by dimension and nodes of the shape function per axis."""
@@ -24,6 +27,49 @@ THREAD = 0.75
 """What each further thread adds, in units of the first (docs/speed.md)."""
 
 NUMBERS, ROUNDS = 20_000, 10
+
+PICTURE, FILMED = 140e3, 20e3
+"""Bytes of a picture, and of a frame of the movie."""
+
+VTU = {2: 85.0, 3: 115.0}
+"""Bytes of a particle in a VTU file, packed, by dimension, once the specimen is loaded."""
+
+CHECKPOINTS = 3
+"""The latest, the one before, and the next one before it has its name."""
+
+FAILING, PATTERN = 0.1, 24.0
+"""Fraction of particles that fail; bytes for each in the pattern of cracks at the largest load, beside 16 an axis."""
+
+
+def disk(scene, count: int) -> tuple[float, float, float]:
+    """Bytes of pictures with the movie, of particle files and of checkpoints; count: particles.
+
+    Pictures at jumps of failures, at most as many again, are not in it.
+    """
+    output = scene.output
+    pictures = 0 if output.frames == 0 else (output.frames + 1) * (2 + output.margin)
+    film = FILMED * (output.frames + 1) if output.movie and output.frames else 0.0
+    files = 0.0 if output.vtu == 0 else (output.vtu + 1) * VTU[scene.dim] * count
+    kept = sum((4.0 if entry.whole else 8.0) * entry.size for entry in stored(scene)) + 4.0
+    if scene.rock.criterion.breaks:
+        kept += PATTERN + 16.0 * scene.dim + FAILING * (8.0 * (4 + scene.dim) + 8.0)
+    return PICTURE * pictures + film, files, CHECKPOINTS * kept * count
+
+
+def disk_said(scene, count: int, out) -> list[str]:
+    """A sentence where the disk of a folder has less than a run will take. count: particles."""
+    needed, free = sum(disk(scene, count)), free_disk(Path(out))
+    if needed <= free:
+        return []
+    return [
+        f"the run will write about {size(needed)} to {out}, whose disk has {size(free)} left; make room, give another "
+        f"folder with --out, or take fewer --frames and a smaller output.vtu"
+    ]
+
+
+def size(count: float) -> str:
+    """Bytes in the unit that people would take."""
+    return f"{count / 1e9:.3g} GB" if count >= 1e9 else f"{count / 1e6:.3g} MB"
 
 
 def particle_step(scene) -> float:

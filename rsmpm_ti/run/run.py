@@ -57,6 +57,10 @@ def simulate(
         raise refuse("resume", resume, "False without an output folder", "give the folder of the run as `out`")
     seeds, kept = scene.particles(), None
     said = review(scene, seeds)
+    if out is not None:
+        from rsmpm_ti.run.forecast import disk_said
+
+        said += disk_said(scene, sum(len(body.x) for body in seeds), out)
     for sentence in said:
         warnings.warn(sentence, RockWarning, stacklevel=2)
     if out is None:
