@@ -28,8 +28,8 @@ THREAD = 0.75
 
 NUMBERS, ROUNDS = 20_000, 10
 
-PICTURE, FILMED = 140e3, 20e3
-"""Bytes of a picture, and of a frame of the movie."""
+PICTURE, SHADED, FILMED = 140e3, 200e3, 20e3
+"""Bytes of a picture, of one of rock that loses strength little by little, and of a frame of the movie."""
 
 VTU = {2: 85.0, 3: 115.0}
 """Bytes of a particle in a VTU file, packed, by dimension, once the specimen is loaded."""
@@ -53,7 +53,8 @@ def disk(scene, count: int) -> tuple[float, float, float]:
     kept = sum((4.0 if entry.whole else 8.0) * entry.size for entry in stored(scene)) + 4.0
     if scene.rock.criterion.breaks:
         kept += PATTERN + 16.0 * scene.dim + FAILING * (8.0 * (4 + scene.dim) + 8.0)
-    return PICTURE * pictures + film, files, CHECKPOINTS * kept * count
+    picture = SHADED if scene.rock.criterion.breaks and scene.rock.nonlocal_mean.acts else PICTURE
+    return picture * pictures + film, files, CHECKPOINTS * kept * count
 
 
 def disk_said(scene, count: int, out) -> list[str]:

@@ -131,6 +131,8 @@ ATTACKS = {
     "a ledger of nothing": (first("ledger_impulse", np.nan), "ledger_impulse is not finite"),
     "an event of nobody": (first("event_id", 10**6), "particles that are not there"),
     "an event to come": (first("event_time", 1e3), "events are of another time"),
+    "an event before rock fails": (first("event_time", 5e-324), "events are of another time"),
+    "instruments that read nonsense": (emptied("history_zero", 1e300), "instruments are not finite"),
     "other counts": (first("event_by_mode", 4), "counts other events"),
     "nodes in no state": (first("contact_0", 9), "no state of nodes"),
     "a file of another name": (

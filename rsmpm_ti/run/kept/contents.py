@@ -22,6 +22,9 @@ from rsmpm_ti.spec.scene import Scene
 LARGEST = 1e30
 """No number of a run is larger."""
 
+SHORTEST = 1e-30
+"""No time of a run is shorter [s], but none at all."""
+
 UNDEFINED = {"axial_strain", "lateral_strain", "volumetric_strain", "stress_top_Pa", "stress_bottom_Pa",
              "force_top_N", "force_bottom_N"}  # fmt: skip
 """Columns of the history that may not be defined."""
@@ -150,13 +153,13 @@ class Contents:
     def _check_events(self) -> None:
         time, ids, mode = (self.arrays[f"event_{name}"] for name in ("time", "id", "mode"))
         late = self.time + self.dt
-        need(((time >= 0.0) & (time <= late)).all(), "events are of another time")
+        onset = float(self.arrays["event_onset"])
+        need(onset == 0.0 or SHORTEST <= onset <= late or onset == NEVER, f"rock began to fail at {onset:g} s")
+        need(((time >= onset * (1.0 - 1e-6)) & (time <= late)).all(), "events are of another time")
         need(((ids >= 0) & (ids < self.count)).all(), "events are of particles that are not there")
         need(((mode == 1) | (mode == 2)).all(), "events are of no known kind")
         counts = np.bincount(mode, minlength=3)[:3]
         need(np.array_equal(self.arrays["event_by_mode"], counts), "it counts other events than it holds")
-        onset = float(self.arrays["event_onset"])
-        need(0.0 <= onset <= late or onset == NEVER, f"rock began to lose strength at {onset:g} s")
         if len(ids):
             most = self.scene.rock.after_failure.max_events
             need(np.bincount(ids).max() <= most, f"a particle has more than {most} events")
@@ -178,7 +181,9 @@ class Contents:
         sure = [k for k, name in enumerate(HISTORY_COLUMNS) if name not in UNDEFINED]
         need(np.isfinite(rows[:, sure]).all(), "its history is not finite")
         need(not np.isinf(reactions).any() and not (np.abs(reactions) > LARGEST).any(), "its reactions are not finite")
-        need(not np.isinf(self.arrays["history_zero"]).any(), "readings of instruments are not finite")
+        zero = self.arrays["history_zero"]
+        need(not (np.abs(zero) > LARGEST).any(), "readings of its instruments are not finite")
+        need(self.scene.loading.settle or not zero.any(), "its instruments do not read from nothing")
         of_row, latest = float(self.arrays["history_time"]), rows[-1] if len(rows) else None
         need(0.0 <= of_row <= self.time * (1.0 + 1e-9), f"its latest row is of t = {of_row:g} s")
         if latest is None:
