@@ -162,6 +162,15 @@ def test_scene_that_this_machine_cannot_hold_is_refused(refused, tmp_path, monke
     assert "domain.dx" in message and "GB" in message and not (tmp_path / "out").exists()
 
 
+def test_grid_that_this_machine_cannot_hold_is_refused(refused, tmp_path, monkeypatch):
+    """Nodes count, and the sparse grid has few of them."""
+    monkeypatch.setattr(memory, "free_memory", lambda: 16e9)
+    wide = ["--set", "domain.lower=-100,0", "--set", "domain.upper=100,2", "--out", str(tmp_path / "out")]
+    message = refused(*wide)
+    assert " nodes, about " in message
+    assert "take domain.grid = sparse" in message and not (tmp_path / "out").exists()
+
+
 def test_single_precision_is_refused_where_it_loses_places(refused, tmp_path):
     far = ["--set", "domain.lower=-400,0", "--set", "domain.grid=sparse", "--precision", "f32", "--out", str(tmp_path)]
     assert "precision = 'f32' is refused: it must be 'f64'" in refused(*far)

@@ -31,7 +31,9 @@ SCENES = {
 }
 
 
-@pytest.mark.parametrize("name", SCENES)
+@pytest.mark.parametrize(
+    "taichi_real, name", [*(("f64", n) for n in SCENES), ("f32", "paper"), ("f32", "lab")], indirect=["taichi_real"]
+)
 def test_arrays_of_a_run_are_those_that_are_expected(taichi_real, name):
     """In both precisions."""
     scene = SCENES[name]()

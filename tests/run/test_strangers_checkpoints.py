@@ -12,6 +12,9 @@ import crafted
 import numpy as np
 import pytest
 from hostile import clear, quickly
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from hypothesis.extra import numpy as hypothesis_numpy
 
 from rsmpm_ti.errors import RockWarning, SceneError
 from rsmpm_ti.output.files import CHECKPOINTS
@@ -195,6 +198,19 @@ def test_a_small_file_stays_small(sound, scene, seeds, tmp_path, monkeypatch):
     (tmp_path / CHECKPOINTS[0]).write_bytes(file.getvalue())
     assert "array text of 80000000000 bytes has 0" in refused(tmp_path, scene, seeds)
     assert not read
+
+
+@settings(max_examples=100, derandomize=True, deadline=None)
+@given(
+    hypothesis_numpy.arrays(hypothesis_numpy.scalar_dtypes(), hypothesis_numpy.array_shapes(min_dims=0, max_dims=3)),
+    st.booleans(),
+)
+def test_arrays_of_users_come_back_as_they_were(values, by_columns):
+    """What an observer remembers may be of any kind of numbers or texts, and lie either way."""
+    values, file = np.asfortranarray(values) if by_columns else values, io.BytesIO()
+    np.savez(file, observer_3_own=values)
+    back = reading.StoredArrays(file).read("observer_3_own")
+    assert back.dtype == values.dtype and back.tobytes("F") == values.tobytes("F") and back.flags.writeable
 
 
 def test_what_memory_cannot_hold_is_not_read(sound, scene, seeds, tmp_path, monkeypatch):

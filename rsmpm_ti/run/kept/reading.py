@@ -41,7 +41,7 @@ def find_file(folder: Path, name: str) -> Path | None:
     path = folder / name
     try:
         kind = path.lstat().st_mode
-    except FileNotFoundError:
+    except (FileNotFoundError, NotADirectoryError):
         return None
     if stat.S_ISLNK(kind):
         target = path.resolve()

@@ -27,10 +27,10 @@ def address_space() -> float:
 
 def free_disk(folder: Path) -> float:
     """Bytes of the disk of a folder that may not be there yet."""
-    there = next((path for path in (folder, *folder.absolute().parents) if path.is_dir()), None)
     try:
+        there = next((path for path in (folder, *folder.absolute().parents) if path.is_dir()), None)
         return math.inf if there is None else float(shutil.disk_usage(there).free)
-    except OSError:
+    except (OSError, ValueError):  # a name that no file can have: who makes the folder says so
         return math.inf
 
 

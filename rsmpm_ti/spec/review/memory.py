@@ -22,7 +22,7 @@ COPIES, PAINTED = {2: 125, 3: 165}, {2: 130, 3: 65}
 """Numbers of 8 bytes per particle in the copies that are there at one time in the process that solves and in the one
 that paints, by dimension; in 3D it shows a slab."""
 
-SEEDING = 100.0
+SEEDING = 120.0
 """Bytes for each place in the box around a body at which a particle might be seeded."""
 
 VIRTUAL_MB = 1900.0
