@@ -91,7 +91,7 @@ class Contents:
             held[side.axis, side.side] = True
         for name in ("grid_velocity", "grid_answered"):
             need(not self.arrays[name][~held].any(), f"{name} is of sides that no force moves")
-        fastest = np.abs(self.arrays["grid_velocity"]).max() * self.dt
+        fastest = np.abs(self.arrays["grid_velocity"]).max() * self.scene.dt
         need(fastest <= MOST_CELLS * g.dx, "its platens go too fast")
 
     def _fields(self) -> dict[str, np.ndarray]:
@@ -131,7 +131,7 @@ class Contents:
         need(((mode >= 0) & (mode <= 2)).all(), "particles have failed in no known way")
         intact = mode == 0
         need((J >= J_BOUNDS[0]).all() and (J[intact] <= J_BOUNDS[1]).all(), "rock is squeezed or stretched too far")
-        need(np.linalg.norm(v, axis=1).max() * self.dt <= MOST_CELLS * g.dx, "particles go too fast")
+        need(np.linalg.norm(v, axis=1).max() * self.scene.dt <= MOST_CELLS * g.dx, "particles go too fast")
         self._check_cells(x + u, gone)
         mass = self.scene.density * self.seeded.J_start * volume
         self._kinetic = float(0.5 * mass @ np.sum(v**2, axis=1))
