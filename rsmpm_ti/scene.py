@@ -12,6 +12,7 @@ from pathlib import Path
 from rsmpm_ti.errors import RockWarning, SceneError, UnstableRun, reason, shown
 from rsmpm_ti.spec.loader import about, available, find, load_scene, scene_name
 from rsmpm_ti.spec.mass_scaling import estimate
+from rsmpm_ti.spec.review.memory import memory
 from rsmpm_ti.spec.review.placement import area_errors
 from rsmpm_ti.spec.review.sentences import review
 from rsmpm_ti.spec.scene import Scene
@@ -88,12 +89,13 @@ def build(options: argparse.Namespace) -> Scene:
 
 def describe(scene: Scene, threads: int | None = None) -> str:
     """What would be run, as `--check` prints it; threads: all by default."""
-    from rsmpm_ti.run.forecast import memory, solving_time
+    from rsmpm_ti.run.forecast import disk, size, solving_time
 
     seeds = scene.particles()
     count = sum(len(body.x) for body in seeds)
     nodes = math.prod(scene.domain.node_counts)
-    solver, painter = (size / 1e6 for size in memory(scene, count))
+    solver, painter = (held / 1e6 for held in memory(scene, count))
+    pictures, files, checkpoints = map(size, disk(scene, count))
     cores = threads or os.cpu_count() or 1
     seconds = solving_time(scene, count, cores)
     rows = (
@@ -102,6 +104,7 @@ def describe(scene: Scene, threads: int | None = None) -> str:
         *area(scene, seeds),
         ("grid nodes", f"{nodes} ({scene.domain.grid}), dx = {1e3 * scene.domain.dx:g} mm"),
         ("memory", f"about {solver:.0f} MB to solve, and {painter:.0f} MB to paint and write"),
+        ("disk", f"about {pictures} of pictures, {files} of particle files, {checkpoints} for checkpoints"),
         ("method", f"{scene.order}, {type(scene.shape).__name__}, {type(scene.transfer).__name__}"),
         ("dt", f"{scene.dt:.4g} s (mass scaling by time_scale = {scene.time_scale:g})"),
         *expectation(scene),
@@ -161,8 +164,12 @@ def main(arguments: list[str] | None = None) -> int:
         find(options.scene)
         scene = build(options)
         if options.check:
+            from rsmpm_ti.run.forecast import disk_said
+
             print(describe(scene, options.threads))
-            for sentence in review(scene, scene.particles()):
+            seeds = scene.particles()
+            count = sum(len(body.x) for body in seeds)
+            for sentence in [*review(scene, seeds), *disk_said(scene, count, folder(options))]:
                 say(sentence)
             return 0
         with warnings.catch_warnings():
@@ -183,6 +190,11 @@ def main(arguments: list[str] | None = None) -> int:
         return 128 + signal.SIGINT
 
 
+def folder(options: argparse.Namespace) -> Path:
+    """Where a run writes."""
+    return Path(options.out) if options.out else Path("renders") / scene_name(options.scene)
+
+
 def say(sentence: object) -> None:
     """A warning, on stderr."""
     print(f"rsmpm_ti: warning: {' '.join(str(sentence).split())}", file=sys.stderr)
@@ -195,8 +207,7 @@ def run(scene: Scene, options: argparse.Namespace) -> int:
 
     from rsmpm_ti.run.run import simulate
 
-    name = scene_name(options.scene)
-    out = Path(options.out) if options.out else Path("renders") / name
+    name, out = scene_name(options.scene), folder(options)
     console = Console(stderr=True)
     columns = (TextColumn("{task.description}"), BarColumn(), TimeElapsedColumn(), TimeRemainingColumn())
     with Progress(*columns, console=console, transient=True, disable=not console.is_terminal) as bar:

@@ -29,8 +29,8 @@ def _times(shape: str, dim: int, grid: str, threads: int, rounds: int) -> Iterat
     import taichi as ti
 
     from rsmpm_ti.backend.start import start_taichi
-    from rsmpm_ti.fields.nodes import filled_fraction
     from rsmpm_ti.solver.advance import Drive
+    from rsmpm_ti.spec.review.memory import filled_fraction
 
     for edge in EDGES[dim]:
         real, _ = start_taichi("f64", "cpu", threads)

@@ -5,6 +5,7 @@ from typing import NamedTuple
 import numpy as np
 import taichi as ti
 
+from rsmpm_ti.fields.geometry import Geometry
 from rsmpm_ti.fields.grid import Grid
 from rsmpm_ti.spec.scene import Scene
 
@@ -25,6 +26,17 @@ class Plane(NamedTuple):
     extent: tuple[int, ...]
 
 
+def pushing_planes(scene: Scene, grid: Geometry) -> tuple[tuple[Plane, ...], dict[int, int]]:
+    """Planes that boundaries push from, and boundary -> plane, both by their number."""
+    of = {
+        k: Plane(b.axis, grid.row(b), 1 if b.side == "lower" else -1, grid.plane(b.axis))
+        for k, b in enumerate(scene.loading.boundaries)
+        if b.unilateral
+    }
+    planes = tuple(sorted(set(of.values())))
+    return planes, {k: planes.index(plane) for k, plane in of.items()}
+
+
 @ti.data_oriented
 class Contacts:
     """Planes of nodes that boundaries push from: one for all boundaries of the same side, axis and place.
@@ -39,10 +51,7 @@ class Contacts:
     """
 
     def __init__(self, scene: Scene, grid: Grid, real):
-        pushing = [(k, b) for k, b in enumerate(scene.loading.boundaries) if b.unilateral]
-        found = sorted({(b.axis, grid.row(b), 1 if b.side == "lower" else -1) for _, b in pushing})
-        self.planes = tuple(Plane(axis, row, inward, grid.plane(axis)) for axis, row, inward in found)
-        self.plane_of = {k: found.index((b.axis, grid.row(b), 1 if b.side == "lower" else -1)) for k, b in pushing}
+        self.planes, self.plane_of = pushing_planes(scene, grid)
         self.gaps = tuple(ti.field(real, extent) for *_, extent in self.planes)
         self.seats = tuple(ti.field(real, extent) for *_, extent in self.planes)
         self.states = tuple(ti.field(ti.i32, extent) for *_, extent in self.planes)

@@ -3,16 +3,12 @@
 import numpy as np
 import taichi as ti
 
-from rsmpm_ti.fields.side_motion import held_sides, side_speeds
-from rsmpm_ti.spec.domain import MARGIN
+from rsmpm_ti.fields.geometry import Geometry
 from rsmpm_ti.spec.scene import Scene
-
-NO_WALL = -(10**6)
-"""Wall index of an axis without a wall."""
 
 
 @ti.data_oriented
-class Grid:
+class Grid(Geometry):
     """Geometry of the background grid. At the start node i sits at origin + i dx [m], and by this place, its label,
     boundaries know their nodes.
 
@@ -32,37 +28,8 @@ class Grid:
     """
 
     def __init__(self, scene: Scene):
-        domain, dim = scene.domain, scene.dim
-        self.dim, self.dx, self.inv_dx = dim, domain.dx, 1.0 / domain.dx
-        beyond = MARGIN + domain.room
-        self.nodes = domain.node_counts
-        self.origin = tuple(float(a) - beyond * domain.dx for a in domain.lower)
-        lower, upper = [NO_WALL] * dim, [-NO_WALL] * dim
-        for boundary in scene.loading.boundaries:
-            row = self.row(boundary)
-            if boundary.side == "lower":
-                lower[boundary.axis] = max(lower[boundary.axis], row)
-            else:
-                upper[boundary.axis] = min(upper[boundary.axis], row)
-        self.wall_lower, self.wall_upper = tuple(lower), tuple(upper)
-        # walls whose nodes are folded, as (axis, row, step inwards, nodes of the row): see wall_nodes.py
-        folded = scene.shape.width == 3 and not scene.transfer.affine
-        self.walls = tuple(
-            (d, rows[d], step, self.plane(d))
-            for d in range(dim)
-            for rows, step in ((lower, 1), (upper, -1))
-            if folded and abs(rows[d]) != -NO_WALL
-        )
-        self.speeds = side_speeds(scene)
-        self.held = held_sides(scene)
-        self.followed = tuple(d for d in range(dim) if any(self.speeds[d]) or d in {side.axis for side in self.held})
-        bounded = tuple((abs(low) != -NO_WALL, abs(up) != -NO_WALL) for low, up in zip(lower, upper, strict=True))
-        self.alone = tuple(sides.index(True) if sum(sides) == 1 else -1 for sides in bounded)
-        # a plane for each side all the same
-        self.rows = tuple(
-            tuple(own if abs(own) != -NO_WALL else other + step for own, other, step in ((low, up, -1), (up, low, 1)))
-            for low, up in zip(lower, upper, strict=True)
-        )
+        super().__init__(scene)
+        dim = self.dim
         self.travel = ti.field(ti.f64, (dim, 2))  # of each side since the start [m]
         self.velocity = ti.field(ti.f64, (dim, 2))  # of sides that a force moves [m/s]
         self._answered = ti.field(ti.f64, (dim, 2))  # impulse that such a side has given the bodies so far [N s]
@@ -76,17 +43,8 @@ class Grid:
 
     def begin(self) -> None:
         """Everything as it is at the start."""
-        at_rest = np.array([(origin, self.inv_dx, self.dx) for origin in self.origin])
         nothing = {f"grid_{name}": np.zeros((self.dim, 2)) for name in ("travel", "velocity", "answered", "began")}
-        self.resume(nothing | {"grid_frame": at_rest})
-
-    def row(self, boundary) -> int:
-        """Number of a boundary's plane of nodes along its axis."""
-        return round((boundary.position - self.origin[boundary.axis]) / self.dx)
-
-    def plane(self, axis: int) -> tuple[int, ...]:
-        """Nodes of a plane across an axis, as numbers along each axis: 1 along its own."""
-        return tuple(1 if d == axis else n for d, n in enumerate(self.nodes))
+        self.resume(nothing | {"grid_frame": self.frame_at(np.zeros((self.dim, 2)))})
 
     def state(self) -> dict[str, np.ndarray]:
         """Between two steps: how far each side has gone [m], [dim, 2], and the frame, [dim, 3], to the last bit."""

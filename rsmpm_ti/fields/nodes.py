@@ -1,13 +1,10 @@
 """Fields of the background nodes, dense or under sparse blocks."""
 
-import numpy as np
 import taichi as ti
 
 from rsmpm_ti.fields.grid import Grid
+from rsmpm_ti.spec.review.memory import BLOCK, power_of_two
 from rsmpm_ti.spec.scene import Scene
-
-BLOCK = 8
-"""Cells per axis of a sparse block."""
 
 SMALL_MASS = 1e-24
 """Nodes lighter than this fraction of a full cell hold nothing: what they are made of is round-off.
@@ -63,32 +60,8 @@ class Nodes:
             self.blocks.deactivate_all()
 
 
-def power_of_two(count: int) -> int:
-    """The smallest that is not below `count`."""
-    return 1 << (count - 1).bit_length()
-
-
 def components(field) -> tuple:
     if isinstance(field, ti.MatrixField):
         columns = range(field.m) if field.ndim == 2 else (None,)
         return tuple(field.get_scalar_field(*((a,) if b is None else (a, b))) for a in range(field.n) for b in columns)
     return (field,)
-
-
-SPARSE_PAYS = 0.03
-"""Filled fraction of the grid below which a step is shorter on the sparse grid: `bench fill`."""
-
-
-def use_sparse_grid(scene: Scene, particle_count: int) -> bool:
-    """'auto' takes the sparse grid where material fills less than the fraction SPARSE_PAYS of the grid."""
-    if scene.domain.outside == "grow":
-        return True
-    if scene.domain.grid != "auto":
-        return scene.domain.grid == "sparse"
-    return filled_fraction(scene, particle_count) < SPARSE_PAYS
-
-
-def filled_fraction(scene: Scene, particle_count: int) -> float:
-    """Cells full of particles over all nodes."""
-    per_cell = min(body.seeding.particles_per_axis for body in scene.bodies) ** scene.dim
-    return float(particle_count / per_cell / np.prod(scene.domain.node_counts))

@@ -1,5 +1,7 @@
 """Fields of the particles: those that a scene's physics needs, and no more."""
 
+from typing import NamedTuple
+
 import numpy as np
 import taichi as ti
 
@@ -29,6 +31,30 @@ class LawHistory:
     def to_numpy(self) -> dict[str, np.ndarray]:
         """The variables by name as they lie in memory, [n] or [n, dim]."""
         return {variable.name: getattr(self, variable.name).to_numpy() for variable in self.variables}
+
+
+class Stored(NamedTuple):
+    """A field of the particles that a run goes on with: name, number of components, whether of whole numbers."""
+
+    name: str
+    size: int
+    whole: bool = False
+
+
+def stored(scene: Scene) -> tuple[Stored, ...]:
+    """What `Particles` stores of each particle of a scene, real numbers first, in its order."""
+    dim, rock = scene.dim, scene.rock
+    history = rock.after_failure.history if rock.criterion.breaks else ()
+    of_law = [Stored(v.name, dim if v.per_axis else 1, v.whole) for v in history]
+    found = [Stored("reference", dim), Stored("u", dim), Stored("v", dim), Stored("sigma", PACKED_LENGTH[dim])]
+    found += [Stored("J", 1), Stored("volume", 1)]
+    found += [Stored("C", dim * dim)] * scene.transfer.affine + [Stored("q", 1)] * rock.viscosity.acts
+    found += [Stored("strength", 1)] * rock.heterogeneity.varies + [entry for entry in of_law if not entry.whole]
+    if rock.criterion.breaks and rock.nonlocal_mean.acts:
+        found += [Stored("excluding_normal", dim)]
+        found += [Stored("crack_strain_nonlocal", 1), Stored("crack_strain_max_nonlocal", 1)]
+    found += [Stored("id", 1, True), *[Stored("mode", 1, True)] * rock.criterion.breaks]
+    return (*found, *(entry for entry in of_law if entry.whole))
 
 
 @ti.data_oriented

@@ -9,18 +9,23 @@ NEVER = 1e300
 it."""
 
 
+def event_capacity(scene: Scene, count: int) -> int:
+    """Most events of a run of so many particles."""
+    return scene.rock.after_failure.max_events * count if scene.rock.criterion.breaks else 1
+
+
 @ti.data_oriented
 class Events:
     """Failure events in the order in which they happen; at most one of each mode per particle."""
 
-    def __init__(self, scene: Scene, capacity: int, real, history):
+    def __init__(self, scene: Scene, count: int, real, history):
         self.count, self.by_mode = ti.field(ti.i32, ()), ti.field(ti.i32, 3)
         # when a particle first begins to lose strength: without fracture energy that is the first event
         self.onset = ti.field(ti.f64, ())
         self.onset[None] = NEVER
         self.names = ("time", "x", "mode", "sigma_1", "sigma_3", "released", "id")
         self.of_history: tuple = ()  # pairs of a column and the variable of the law that it copies
-        capacity = scene.rock.after_failure.max_events * capacity if scene.rock.criterion.breaks else 1
+        capacity = event_capacity(scene, count)
         if scene.rock.criterion.breaks and scene.rock.after_failure.oriented:
             self.normal = ti.Vector.field(scene.dim, real, capacity)  # unit vector across the crack
             self.names += ("normal",)

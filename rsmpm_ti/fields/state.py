@@ -1,6 +1,7 @@
 """What a run holds: particles, background nodes, ledger and events, allocated for one scene and no more."""
 
 import math
+from typing import NamedTuple
 
 import numpy as np
 import taichi as ti
@@ -8,7 +9,7 @@ import taichi as ti
 from rsmpm_ti.errors import SceneError
 from rsmpm_ti.fields.contacts import Contacts
 from rsmpm_ti.fields.grid import Grid
-from rsmpm_ti.fields.nodes import Nodes, use_sparse_grid
+from rsmpm_ti.fields.nodes import Nodes
 from rsmpm_ti.fields.nonlocal_sums import NonlocalSums
 from rsmpm_ti.fields.parallel import traversal
 from rsmpm_ti.fields.particles import Particles
@@ -18,6 +19,7 @@ from rsmpm_ti.rock.tensors import PACKED_LENGTH
 from rsmpm_ti.spec.confinement import confined_volume_ratio
 from rsmpm_ti.spec.ground.in_situ import start_stress
 from rsmpm_ti.spec.loading_start import Affine
+from rsmpm_ti.spec.review.memory import use_sparse_grid
 from rsmpm_ti.spec.scene import Scene
 from rsmpm_ti.spec.seeding import Seeds
 
@@ -34,6 +36,27 @@ class NoForceField:
         return ti.Vector.zero(float, X.n)
 
 
+class Seeded(NamedTuple):
+    """All particles of a scene as they are seeded, in the order of their ids."""
+
+    x: np.ndarray  # [m], [n, dim]
+    volume: np.ndarray  # as the scene is drawn [m^dim], [n]
+    stress: np.ndarray  # along axes [Pa], [n, 3]
+    J: np.ndarray  # volume over the stress-free one, [n]
+    J_start: float  # of all together
+
+
+def seeded(scene: Scene, seeds: list[Seeds]) -> Seeded:
+    """seeds: `scene.particles()`."""
+    x, volume = (np.concatenate([getattr(body, name) for body in seeds]) for name in ("x", "volume"))
+    if scene.loading.initial_stress is not None:
+        stress, J = start_stress(scene, x)
+        return Seeded(x, volume, stress, J, float(volume.sum() / (volume / J).sum()))
+    pressure = scene.loading.confinement
+    ratio = confined_volume_ratio(pressure, scene.rock.elasticity)
+    return Seeded(x, volume, -pressure * np.ones((len(x), 3)), np.broadcast_to(ratio, len(x)), ratio)
+
+
 @ti.data_oriented
 class Simulation:
     """Everything kernels need, as one object: a kernel launch then looks up one template argument, not ten."""
@@ -48,12 +71,7 @@ class Simulation:
         self.band = scene.shape.crack_band * scene.domain.dx
         self.confinement = scene.loading.confinement
         self.confined = self.confinement > 0.0
-        x, volume = (np.concatenate([getattr(body, name) for body in seeds]) for name in ("x", "volume"))
-        J: float | np.ndarray = confined_volume_ratio(self.confinement, scene.rock.elasticity)
-        self.J_start, stress = J, -self.confinement * np.ones((len(x), 3))
-        if scene.loading.initial_stress is not None:
-            stress, J = start_stress(scene, x)
-            self.J_start = float(volume.sum() / (volume / J).sum())
+        x, volume, stress, J, self.J_start = seeded(scene, seeds)
         # of the stress-free rock, to go with `particles.volume`; as it starts it is the scene's
         self.density, self.wave_speed = scene.density * self.J_start, scene.wave_speed
         # mass scaling must leave the weight of a body unchanged, so its acceleration shrinks as its density grows
@@ -82,7 +100,7 @@ class Simulation:
         if self.is_nonlocal:
             self.nonlocal_sums = NonlocalSums(scene, self.grid, real)
         self.report = Report(scene)
-        self._fill(scene, seeds, x, volume, stress, np.broadcast_to(J, len(x)))
+        self._fill(scene, seeds, x, volume, stress, J)
 
     def _fill(self, scene: Scene, seeds: list[Seeds], x, volume, stress, J) -> None:
         """Particles as they start: x [m], [n, dim]; volume [m^dim], [n]; stress along axes [Pa], [n, 3]; J, [n]."""

@@ -6,18 +6,25 @@ so that a run that goes on takes the same sums in the same order as one that was
 
 import json
 import time
-import zipfile
+import warnings
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
-from rsmpm_ti.errors import ObserverError, SceneError, refuse
+from rsmpm_ti.errors import ObserverError, RockWarning, SceneError, refuse, short, shown
 from rsmpm_ti.output.files import CHECKPOINTS
+from rsmpm_ti.run.kept.contents import Contents
+from rsmpm_ti.run.kept.layout import MOST_TEXT, OBSERVERS, check_layout
+from rsmpm_ti.run.kept.observers import check_progress
+from rsmpm_ti.run.kept.reading import StoredArrays, find_file, need
+from rsmpm_ti.run.settings import Settings
 from rsmpm_ti.solver.observer import Observer, Watch
 from rsmpm_ti.solver.outflow import Dropped
 from rsmpm_ti.solver.view import View
+from rsmpm_ti.spec.review.machine import address_space, free_memory
+from rsmpm_ti.spec.scene import Scene
 
 LEDGER = ("impulse", "work", "latest", "speed", "body_work", "viscous", "released")
 PER_SLOT = ("body_work", "viscous", "released")
@@ -45,10 +52,10 @@ it is looked at. The time scale is compared as a number: 'auto' asks where the r
 
 def held(identity: dict) -> dict:
     """What a run that goes on must share with the one that wrote a checkpoint."""
-    scene = dict(identity.get("scene", {}))
+    scene = dict(identity["scene"])
     scene.pop("output", None)
     for part, names in MAY_CHANGE.items():
-        if part in scene:
+        if isinstance(scene.get(part), dict):
             scene[part] = {name: value for name, value in scene[part].items() if name not in names}
     return identity | {"scene": scene}
 
@@ -128,8 +135,10 @@ def observer_arrays(watches: list[Watch]) -> tuple[list[dict], dict[str, np.ndar
         if problem is not None:
             wanted = "numbers, texts, lists and dicts of them, and NumPy arrays of numbers"
             raise ObserverError(f"observer {watch.name}: state() may hold {wanted} ({problem})")
-        arrays |= {f"observer_{k}_{name}": value for name, value in found.items()}
+        arrays |= {f"{OBSERVERS}{k}_{name}": value for name, value in found.items()}
         parts.append({"next": state["next"], "own": rest, "arrays": list(found)})
+        if len(json.dumps(rest)) > MOST_TEXT // 2:
+            raise ObserverError(f"observer {watch.name}: state() holds too many numbers in lists; use NumPy arrays")
     return parts, arrays
 
 
@@ -141,7 +150,7 @@ def restore_observers(
     fraction: of the run that is done, where its end or its output is another now; None where it is not.
     """
     for k, (watch, part) in enumerate(zip(watches, parts, strict=True)):
-        kept = {name: arrays[f"observer_{k}_{name}"] for name in part["arrays"]}
+        kept = {name: arrays[f"{OBSERVERS}{k}_{name}"] for name in part["arrays"]}
         watch.resume({"next": part["next"], "own": part["own"] | kept})
         if fraction is not None:
             watch.realign(fraction)
@@ -163,34 +172,60 @@ def _event_columns(sim) -> tuple[str, ...]:
     return sim.events.names
 
 
-def read(out: Path, identity: dict) -> dict[str, np.ndarray] | None:
-    """The latest checkpoint in a run's folder that can be read whole; None where there is none at all.
+def read(out: Path, scene: Scene, seeds, settings: Settings) -> dict[str, np.ndarray] | None:
+    """The latest checkpoint in a run's folder that is sound; None where there is none at all.
 
-    Raises SceneError where it belongs to another scene, version or precision, naming the difference, and where there
-    are only damaged ones. The end of the run, its rows and its output may differ.
+    seeds: `scene.particles()`. A stranger may have written it: nothing of it is used before all of it has been checked.
+    One that is damaged is passed over, with a RockWarning, for the one before. Raises SceneError where it belongs to
+    another scene, version or precision, naming the difference, and where there are only damaged ones. The end of the
+    run, its rows and its output may differ.
     """
     damaged = ""
     for name in CHECKPOINTS:
-        path = Path(out) / name
-        if not path.exists():
-            continue
+        path, arrays = Path(out) / name, None
         try:
-            with np.load(path, allow_pickle=False) as file:
-                arrays = {key: file[key] for key in file.files}  # reads all of it, against its checksums
-            kept = json.loads(str(arrays["text"]))["identity"]
-        except (OSError, ValueError, KeyError, EOFError, zipfile.BadZipFile, NotImplementedError) as error:
-            damaged = f"{path} is damaged ({' '.join(str(error).split())})"
-            continue
-        where = difference(held(kept), held(json.loads(json.dumps(identity))))
+            if find_file(Path(out), name):
+                arrays = _sound(path, scene, seeds, settings)
+        except SceneError:
+            raise
+        except Exception as error:  # libraries raise anything where what they are to read was made for it
+            reason = "".join(c if c.isprintable() else " " for c in str(error) or type(error).__name__)
+            damaged = f"{path} is damaged ({short(' '.join(reason.split()))})"
+        if arrays is not None:
+            if damaged:
+                warnings.warn(f"{damaged}; the run goes on from {name}", RockWarning, stacklevel=2)
+            return arrays
+    if damaged:
+        raise SceneError(f"{damaged} and there is no other; start anew without --resume")
+    return None
+
+
+def _sound(path: Path, scene: Scene, seeds, settings: Settings) -> dict[str, np.ndarray]:
+    """All arrays of a checkpoint, once they are known to be those of this run; raises Damaged and what else happens."""
+    with open(path, "rb") as file:
+        stored = StoredArrays(file)
+        need("text" in stored.headers, "it has no text")
+        header = stored.headers["text"]
+        need(header.dtype.kind == "U" and header.shape == (), "its text is none")
+        need(header.dtype.itemsize <= 4 * MOST_TEXT, "its text is too long")
+        text = json.loads(str(stored.read("text")))
+        need(isinstance(text, dict) and set(text) == {"progress", "identity"}, "its text is no dict of two")
+        identity = text["identity"]
+        need(isinstance(identity, dict) and isinstance(identity.get("scene"), dict), "it does not say whose it is")
+        where = difference(held(identity), held(json.loads(json.dumps(settings.identity(scene)))))
         if where:
             raise SceneError(
                 f"{path} is of another run and is refused: {where}; resume with the options of that run (its end, rows "
                 f"and output may differ), or start anew without --resume"
             )
-        return arrays
-    if damaged:
-        raise SceneError(f"{damaged} and there is no other; start anew without --resume")
-    return None
+        count, free = sum(len(body.x) for body in seeds), min(free_memory(), address_space())
+        check_layout(stored.headers, scene, count, settings)
+        need(stored.size < free, f"it holds {stored.size / 1e9:.3g} GB, and {free / 1e9:.3g} GB are free")
+        arrays = {name: stored.read(name) for name in stored.headers}
+    contents = Contents({name: values for name, values in arrays.items() if name != "text"}, scene, seeds)
+    contents.check()
+    check_progress(text["progress"], contents, settings)
+    return arrays
 
 
 def changed(arrays: dict[str, np.ndarray], identity: dict) -> bool:
@@ -218,4 +253,5 @@ def difference(there, here, where: str = "") -> str:
     if isinstance(there, list) and isinstance(here, list) and len(there) == len(here):
         pairs = enumerate(zip(there, here, strict=True))
         return next(filter(None, (difference(a, b, f"{where}[{k}]") for k, (a, b) in pairs)), "")
-    return "" if there == here else f"{where} is {there!r} there and {here!r} here"
+    name = where if where.isprintable() else repr(where)
+    return "" if there == here else f"{short(name)} is {shown(there)} there and {shown(here)} here"

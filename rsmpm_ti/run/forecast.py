@@ -1,8 +1,4 @@
-"""What a run will take, told before it starts: memory at its largest, and time.
-
-Memory is that of the two processes of a run, the one that solves and the one that paints: Python with its libraries,
-the fields, and copies of the particles on their way to files. Measured as the largest resident memory of runs of 20 000
-to 320 000 particles, on Linux.
+"""What a run will take of time and of the disk, told before it starts; for memory see `spec/review/memory.py`.
 
 Time is particles x steps x the time of one particle's step, in units of a loop over numbers that is timed here and now:
 how fast a machine does the one says how fast it does the other. It is the solver's alone, on cores that nobody else
@@ -10,19 +6,13 @@ uses. Where much cracks a step takes up to a quarter more; what it takes to star
 """
 
 import time
+from pathlib import Path
 
 import numpy as np
 
+from rsmpm_ti.fields.particles import stored
 from rsmpm_ti.method.shape import Gimp
-from rsmpm_ti.spec.scene_checks import memory_of_nodes, memory_of_particles
-
-SOLVER_MB, NONLOCAL_MB, PAINTER_MB = {2: 245.0, 3: 290.0}, 20.0, 345.0
-"""Largest resident memory of a run of no particles: Python, Taichi and its compiler, by dimension; what kernels of a
-nonlocal mean add; the process that paints."""
-
-COPIES = {2: 85, 3: 135}
-"""Numbers of 8 bytes per particle in the copies that are there at one time, by dimension; the painter has no more of
-them in 3D, where it shows a slab."""
+from rsmpm_ti.spec.review.machine import free_disk
 
 UNITS = {(2, 2): 17.0, (2, 3): 28.0, (3, 2): 56.0, (3, 3): 123.0}
 """Time of a particle's step over that of the loop's, by dimension and nodes of the shape function per axis."""
@@ -38,15 +28,49 @@ THREAD = 0.75
 
 NUMBERS, ROUNDS = 20_000, 10
 
+PICTURE, SHADED, FILMED = 140e3, 200e3, 20e3
+"""Bytes of a picture, of one of rock that loses strength little by little, and of a frame of the movie."""
 
-def memory(scene, count: int) -> tuple[float, float]:
-    """Largest resident memory of the process that solves and of the one that paints [bytes]; count: particles."""
-    rock = scene.rock
-    acts = rock.criterion.breaks and rock.nonlocal_mean.acts
-    held = 8.0 * count
-    fields = memory_of_particles(scene, count) + memory_of_nodes(scene)
-    solver = 1e6 * (SOLVER_MB[scene.dim] + NONLOCAL_MB * acts) + fields + COPIES[scene.dim] * held
-    return solver, 1e6 * PAINTER_MB + COPIES[2] * held
+VTU = {2: 85.0, 3: 115.0}
+"""Bytes of a particle in a VTU file, packed, by dimension, once the specimen is loaded."""
+
+CHECKPOINTS = 3
+"""The latest, the one before, and the next one before it has its name."""
+
+FAILING, PATTERN = 0.1, 24.0
+"""Fraction of particles that fail; bytes for each in the pattern of cracks at the largest load, beside 16 an axis."""
+
+
+def disk(scene, count: int) -> tuple[float, float, float]:
+    """Bytes of pictures with the movie, of particle files and of checkpoints; count: particles.
+
+    Pictures at jumps of failures, at most as many again, are not in it.
+    """
+    output = scene.output
+    pictures = 0 if output.frames == 0 else (output.frames + 1) * (2 + output.margin)
+    film = FILMED * (output.frames + 1) if output.movie and output.frames else 0.0
+    files = 0.0 if output.vtu == 0 else (output.vtu + 1) * VTU[scene.dim] * count
+    kept = sum((4.0 if entry.whole else 8.0) * entry.size for entry in stored(scene)) + 4.0
+    if scene.rock.criterion.breaks:
+        kept += PATTERN + 16.0 * scene.dim + FAILING * (8.0 * (4 + scene.dim) + 8.0)
+    picture = SHADED if scene.rock.criterion.breaks and scene.rock.nonlocal_mean.acts else PICTURE
+    return picture * pictures + film, files, CHECKPOINTS * kept * count
+
+
+def disk_said(scene, count: int, out) -> list[str]:
+    """A sentence where the disk of a folder has less than a run will take. count: particles."""
+    needed, free = sum(disk(scene, count)), free_disk(Path(out))
+    if needed <= free:
+        return []
+    return [
+        f"the run will write about {size(needed)} to {out}, whose disk has {size(free)} left; make room, give another "
+        f"folder with --out, or take fewer --frames and a smaller output.vtu"
+    ]
+
+
+def size(count: float) -> str:
+    """Bytes in the unit that people would take."""
+    return f"{count / 1e9:.3g} GB" if count >= 1e9 else f"{count / 1e6:.3g} MB"
 
 
 def particle_step(scene) -> float:

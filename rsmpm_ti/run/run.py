@@ -59,6 +59,10 @@ def simulate(
         raise refuse("resume", resume, "False without an output folder", "give the folder of the run as `out`")
     seeds, kept = scene.particles(), None
     said = review(scene, seeds)
+    if out is not None:
+        from rsmpm_ti.run.forecast import disk_said
+
+        said += disk_said(scene, sum(len(body.x) for body in seeds), out)
     for sentence in said:
         warnings.warn(sentence, RockWarning, stacklevel=2)
     interrupt = Interrupt()
@@ -68,7 +72,7 @@ def simulate(
         if resume:
             from rsmpm_ti.run.checkpoint import check_end, read
 
-            kept = read(Path(out), settings.identity(scene))
+            kept = read(Path(out), scene, seeds, settings)
             if kept is not None:
                 check_end(kept, scene)
         return Run(scene, seeds, prepare(scene, out, keep=kept is not None), settings, interrupt, kept, said).go()

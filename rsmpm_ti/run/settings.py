@@ -4,6 +4,8 @@ import math
 from collections.abc import Callable
 from dataclasses import dataclass
 
+import numpy as np
+
 from rsmpm_ti import __version__
 from rsmpm_ti.errors import refuse
 from rsmpm_ti.records.history_table import HISTORY_COLUMNS
@@ -54,6 +56,11 @@ class Settings:
 
             for observer in self.observers:
                 Watch(observer)
+
+    @property
+    def kind(self) -> type:
+        """NumPy's type of the numbers of particles."""
+        return np.float64 if self.precision == "f64" else np.float32
 
     def identity(self, scene: Scene) -> dict:
         """What two runs must share if one goes on from the other's checkpoint."""

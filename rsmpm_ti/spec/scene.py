@@ -31,10 +31,11 @@ from rsmpm_ti.spec.load_cell import LoadCell
 from rsmpm_ti.spec.loading_start import Affine, AtRest, Press, Program, Ramp
 from rsmpm_ti.spec.mass_scaling import MAX_TIME_SCALE, estimate
 from rsmpm_ti.spec.regions import Region
+from rsmpm_ti.spec.review.memory import check_memory, check_seeding
 from rsmpm_ti.spec.review.placement import check_flaws, check_overlap, check_platens
 from rsmpm_ti.spec.review.plausible import blamed
 from rsmpm_ti.spec.review.slit_check import check_cuts
-from rsmpm_ti.spec.scene_checks import check_bodies, check_cracks, check_loading, check_memory, check_motion, check_stop
+from rsmpm_ti.spec.scene_checks import check_bodies, check_cracks, check_loading, check_motion, check_stop
 from rsmpm_ti.spec.seeding import Jittered, Lattice, Seeds
 from rsmpm_ti.units import Acceleration, LengthOrArea, Pressure, Spin, Time, Velocity
 
@@ -287,7 +288,7 @@ class Scene:
     def particles(self) -> list[Seeds]:
         """Initial positions and volumes of each body's particles; refuses empty bodies, two in one place, tied slits,
         and platens within a body."""
-        check_memory(self)
+        check_seeding(self)
         check_flaws(self)
         origin = np.array(self.domain.lower, dtype=float)
         seeds = []
@@ -296,6 +297,7 @@ class Scene:
             seeds.append(body.seeding.fill(body.region, origin, self.domain.dx))
             if len(seeds[-1].x) == 0:
                 raise SceneError(f"bodies[{k}].region holds no particle: it is smaller than dx = {self.domain.dx} m")
+        check_memory(self, sum(len(body.x) for body in seeds))
         check_overlap(self, seeds)
         check_platens(self, seeds)
         return seeds

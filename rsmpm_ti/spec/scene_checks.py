@@ -5,7 +5,6 @@ Everything is arithmetic on the parts; nothing is seeded. Each check raises Scen
 
 import itertools
 import math
-import os
 
 import numpy as np
 
@@ -13,7 +12,6 @@ from rsmpm_ti.errors import SceneError, refuse, shown
 from rsmpm_ti.method.shape import Gimp
 from rsmpm_ti.method.time_step import MAX_COUNT
 from rsmpm_ti.rock.after_failure import check_law
-from rsmpm_ti.rock.tensors import PACKED_LENGTH
 from rsmpm_ti.spec.loading_start import Affine, Press, Program, Ramp
 from rsmpm_ti.spec.mass_scaling import MIN_TRANSITS
 
@@ -52,59 +50,12 @@ def check_bodies(scene) -> None:
         raise refuse("domain.dx", scene.domain.dx, most)
 
 
-def check_memory(scene) -> None:
-    """Refuse what this machine cannot hold, before its particles are seeded."""
-    held = physical_memory()
-    count = 0.0
-    for body in scene.bodies:
-        low, high = body.region.bounds()
-        count += math.prod((high - low) / scene.domain.dx * body.seeding.particles_per_axis)
-    needed = memory_of_particles(scene, count)
-    if held and needed > held:
-        allowed = f"such that {count:.3g} particles, about {needed / 1e9:.3g} GB, fit in the {held / 1e9:.3g} GB here"
-        raise refuse("domain.dx", scene.domain.dx, allowed, "or take fewer particles_per_axis")
-
-
-def memory_of_particles(scene, count: float) -> float:
-    """Bytes of the fields of so many particles and of their failure events, in double precision."""
-    rock, dim = scene.rock, scene.dim
-    packed = PACKED_LENGTH[dim]
-    # reference, u, v; sigma; L; J, volume and room for sorting
-    reals = 3 * dim + packed + dim * dim + 3
-    reals += dim * dim * scene.transfer.affine + rock.viscosity.acts + rock.heterogeneity.varies
-    whole = 4  # id, key, base, order
-    event = 0
-    if rock.criterion.breaks:
-        law, nonlocal_fields = rock.after_failure, 3 + dim
-        whole += 1 + sum(v.whole for v in law.history)
-        reals += sum(dim if v.per_axis else 1 for v in law.history if not v.whole)
-        reals += nonlocal_fields * rock.nonlocal_mean.acts
-        event = law.max_events * (8 * (4 + dim + dim * law.oriented) + 4 * 2)
-    return count * (8 * reals + 4 * whole + event)
-
-
-def memory_of_nodes(scene) -> float:
-    """Bytes of the fields of all nodes of a dense grid, in double precision."""
-    reals = 1 + scene.dim * (4 if scene.order == "musl" else 2)
-    if scene.rock.criterion.breaks and scene.rock.nonlocal_mean.acts:
-        reals += 2 * 6 + 1.5
-    return 8.0 * reals * math.prod(scene.domain.node_counts)
-
-
 def check_precision(scene, precision: str) -> None:
     """Refuse single precision where it cannot tell places within a cell: it rounds them to 6e-8 of a coordinate."""
     far = scene.domain.farthest
     if precision == "f32" and not scene.domain.dx >= SINGLE_FRACTION * far:
         allowed = f"'f64' where dx is less than {SINGLE_FRACTION:g} of the largest coordinate, {far:g} m"
         raise refuse("precision", precision, allowed, "or move the domain to the origin")
-
-
-def physical_memory() -> int:
-    """Bytes of memory of this machine; 0 where the system does not say."""
-    try:
-        return os.sysconf("SC_PAGE_SIZE") * os.sysconf("SC_PHYS_PAGES")
-    except (AttributeError, OSError, ValueError):
-        return 0
 
 
 def check_loading(scene) -> None:

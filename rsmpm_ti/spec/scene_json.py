@@ -62,17 +62,24 @@ def _once(pairs: list[tuple]) -> dict:
     """An object of JSON, where the last of two equal keys would win without a word."""
     found = dict(pairs)
     if len(found) < len(pairs):
-        keys = [key for key, _ in pairs]
-        twice = next(key for key in keys if keys.count(key) > 1)
+        seen: set[str] = set()
+        twice = next(key for key, _ in pairs if key in seen or seen.add(key))  # type: ignore[func-returns-value]
         raise SceneError(f"scene: {shown(twice)} stands twice in one object; say it once")
     return found
+
+
+LARGEST = 16 * 2**20
+"""Bytes of a record: one of the most bodies that a scene may have takes half of it."""
 
 
 def read_scene(path) -> Scene:
     """A Scene from a recorded `scene.json` (its "scene" entry) or from the bare entry."""
     try:
-        with open(path, encoding="utf-8") as file:
-            data = json.load(file, object_pairs_hook=_once)
+        with open(path, "rb") as file:
+            text = file.read(LARGEST + 1)  # a device has no size and no end
+        if len(text) > LARGEST:
+            raise SceneError(f"{path} is no recorded scene: it is larger than {LARGEST >> 20} MiB")
+        data = json.loads(text.decode("utf-8"), object_pairs_hook=_once)
         return from_plain(data.get("scene", data) if isinstance(data, dict) else data)
     except SceneError:
         raise

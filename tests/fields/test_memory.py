@@ -7,7 +7,7 @@ import pytest
 from rsmpm_ti import Apic, load_scene
 from rsmpm_ti.bench.scaling import bytes_of
 from rsmpm_ti.fields.state import Simulation
-from rsmpm_ti.spec.scene_checks import memory_of_nodes, memory_of_particles
+from rsmpm_ti.spec.review.memory import memory_of_nodes, memory_of_particles
 
 pytestmark = pytest.mark.usefixtures("taichi_f64")
 
@@ -34,4 +34,4 @@ def test_estimate_of_memory_is_what_fields_take(name):
         sums = sim.nonlocal_sums
         nodes += sum(8 * field.n * field.shape[0] * field.shape[1] for field in (sums.sums, sums.other))
         nodes += 12 * sums.peak.shape[0] * sums.peak.shape[1]  # and which nodes are overloaded, in whole numbers
-    assert memory_of_nodes(scene) == pytest.approx(nodes, rel=1e-12)
+    assert memory_of_nodes(scene, count) == pytest.approx(nodes, rel=1e-12)

@@ -27,9 +27,10 @@ from rsmpm_ti import (
 )
 from rsmpm_ti.cases.static_state import set_up
 from rsmpm_ti.fields.grid import Grid
-from rsmpm_ti.fields.nodes import BLOCK, Nodes
+from rsmpm_ti.fields.nodes import Nodes
 from rsmpm_ti.solver.readout import take_snapshot
 from rsmpm_ti.spec.domain import MARGIN
+from rsmpm_ti.spec.review.memory import BLOCK
 
 DX = 1e-3
 SOME = [(5, 5), (3, 7), (6, 6), (9, 2), (12, 13), (4, 8), (1, 5), (3, 3, 3), (5, 3, 6), (2, 5, 4)]

@@ -26,8 +26,8 @@ from rsmpm_ti.run import checkpoint
 from rsmpm_ti.run.attempts import KEPT, Attempts
 from rsmpm_ti.run.settings import Settings
 from rsmpm_ti.scene import main
-from rsmpm_ti.spec import scene_checks
 from rsmpm_ti.spec.loader import load_scene, machine
+from rsmpm_ti.spec.review import memory
 from rsmpm_ti.spec.scene_json import read_scene, to_plain
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -168,9 +168,18 @@ def test_painter_that_needs_vulkan_is_refused_without_it(refused, tmp_path, monk
 
 
 def test_scene_that_this_machine_cannot_hold_is_refused(refused, tmp_path, monkeypatch):
-    monkeypatch.setattr(scene_checks, "physical_memory", lambda: 1_000_000)
+    monkeypatch.setattr(memory, "free_memory", lambda: 1_000_000)
     message = refused("--out", str(tmp_path / "out"))
     assert "domain.dx" in message and "GB" in message and not (tmp_path / "out").exists()
+
+
+def test_grid_that_this_machine_cannot_hold_is_refused(refused, tmp_path, monkeypatch):
+    """Nodes count, and the sparse grid has few of them."""
+    monkeypatch.setattr(memory, "free_memory", lambda: 16e9)
+    wide = ["--set", "domain.lower=-100,0", "--set", "domain.upper=100,2", "--out", str(tmp_path / "out")]
+    message = refused(*wide)
+    assert " nodes, about " in message
+    assert "take domain.grid = sparse" in message and not (tmp_path / "out").exists()
 
 
 def test_single_precision_is_refused_where_it_loses_places(refused, tmp_path):
@@ -243,7 +252,7 @@ def test_checkpoint_that_means_harm_is_refused_and_not_executed(tmp_path):
     with zipfile.ZipFile(tmp_path / CHECKPOINTS[0], "w") as file:
         file.writestr("text.npy", buffer.getvalue())
     with pytest.raises(SceneError, match="is damaged"):
-        checkpoint.read(tmp_path, Settings().identity(scene))
+        checkpoint.read(tmp_path, scene, scene.particles(), Settings())
     assert not mark.exists()
     np.load(tmp_path / CHECKPOINTS[0], allow_pickle=True)["text"]
     assert mark.exists()  # the file does what it is made for where pickles are allowed

@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 from rsmpm_ti import Column, Observer, ObserverError, SceneError, load_scene, simulate
+from rsmpm_ti.run import checkpoint
 from rsmpm_ti.run.checkpoint import observer_arrays, restore_observers
 from rsmpm_ti.solver.observer import Watch, look_all
 
@@ -144,6 +145,16 @@ def test_an_observer_that_raises_ends_the_run_in_one_line_and_all_else_is_writte
     steps = [step for step, _, _ in again.seen]
     assert result.stopped == "" and steps == sorted(set(steps)) and again.seen[-1][2] == len(result.history)
     assert [fraction for _, fraction, _ in mended.seen] == pytest.approx([0.0, 0.25, 0.5, 0.75, 1.0], abs=2.5 / ROWS)
+
+
+def test_more_than_a_checkpoint_is_read_back_with_is_no_state(monkeypatch):
+    """Else the run could not go on from it."""
+    counts = Counts()
+    counts.seen = [(k, 0.0, k) for k in range(100)]
+    observer_arrays([Watch(counts)])
+    monkeypatch.setattr(checkpoint, "MOST_TEXT", 1000)
+    with pytest.raises(ObserverError, match=r"observer Counts: state\(\) holds too many numbers"):
+        observer_arrays([Watch(counts)])
 
 
 def test_other_observers_than_those_of_the_checkpoint_are_refused(tmp_path):

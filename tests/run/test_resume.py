@@ -14,12 +14,13 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from rsmpm_ti.errors import SceneError
+from rsmpm_ti.errors import RockWarning, SceneError
 from rsmpm_ti.output.files import CHECKPOINTS, write_checkpoint
 from rsmpm_ti.records.history_table import HISTORY_COLUMNS
 from rsmpm_ti.records.result import Progress
 from rsmpm_ti.run import checkpoint
 from rsmpm_ti.run.run import simulate
+from rsmpm_ti.run.settings import Settings
 from rsmpm_ti.scene import build, main, parser
 
 RUN = [
@@ -127,6 +128,12 @@ def test_ctrl_c_and_sigterm_write_what_there_is_and_resume_goes_on(whole, tmp_pa
     assert_same_run(tmp_path, whole)
 
 
+def read(folder: Path):
+    """The checkpoint from which RUN would go on in a folder."""
+    scene = build(parser().parse_args(RUN))
+    return checkpoint.read(folder, scene, scene.particles(), Settings(threads=1))
+
+
 def damage(path: Path, how: str) -> None:
     data = path.read_bytes()
     if how == "truncated":
@@ -143,14 +150,14 @@ def test_a_damaged_checkpoint_is_passed_over_for_the_one_before(whole, tmp_path,
     for name in CHECKPOINTS:
         shutil.copy(whole / name, tmp_path / name)
     with np.load(whole / CHECKPOINTS[0]) as latest, np.load(whole / CHECKPOINTS[1]) as previous:
-        identity = json.loads(str(latest["text"]))["identity"]
         assert latest["clock_step"] >= previous["clock_step"]
         rows = len(previous["history"])
     damage(tmp_path / CHECKPOINTS[0], how)
-    assert len(checkpoint.read(tmp_path, identity)["history"]) == rows
+    with pytest.warns(RockWarning, match=r"checkpoint.npz is damaged .*; the run goes on from checkpoint.previous.npz"):
+        assert len(read(tmp_path)["history"]) == rows
     damage(tmp_path / CHECKPOINTS[1], how)
     with pytest.raises(SceneError, match="damaged .* start anew"):
-        checkpoint.read(tmp_path, identity)
+        read(tmp_path)
 
 
 @pytest.mark.parametrize(
@@ -173,11 +180,10 @@ def test_a_checkpoint_of_another_version_is_refused(whole, tmp_path):
     with np.load(whole / CHECKPOINTS[0]) as file:
         arrays = {key: file[key] for key in file.files}
     text = json.loads(str(arrays["text"]))
-    identity = json.loads(json.dumps(text["identity"]))
     text["identity"]["rsmpm_ti"] = "0.0.1"
     write_checkpoint(tmp_path, arrays | {"text": np.array(json.dumps(text))})
     with pytest.raises(SceneError, match="rsmpm_ti is '0.0.1' there"):
-        checkpoint.read(tmp_path, identity)
+        read(tmp_path)
 
 
 def test_loading_a_checkpoint_runs_nobodys_code(tmp_path):
@@ -187,12 +193,12 @@ def test_loading_a_checkpoint_runs_nobodys_code(tmp_path):
 
     np.savez(tmp_path / CHECKPOINTS[0], text=np.array([Trap()], dtype=object))
     with pytest.raises(SceneError, match="damaged"):
-        checkpoint.read(tmp_path, {})
+        read(tmp_path)
     assert not (tmp_path / "sprung").exists()
 
 
 def test_without_a_checkpoint_resume_starts_from_the_start(tmp_path):
-    assert checkpoint.read(tmp_path, {}) is None
+    assert read(tmp_path) is None
 
 
 ELASTIC = ["intact", "--elastic", "--set", "dx=0.01", "--set", "shape=Linear", "--threads", "1", "--no-movie"]
