@@ -19,6 +19,8 @@ import numpy as np
 
 import rsmpm_ti
 from rsmpm_ti.errors import SceneError
+from rsmpm_ti.output.files import CHECKPOINTS, COLLECTION, frame_name
+from rsmpm_ti.output.folder import RunFolder
 from rsmpm_ti.output.pictures import Commission
 from rsmpm_ti.solver.readout import Readout
 
@@ -26,16 +28,18 @@ WAITING_BYTES = 512 * 2**20
 """Orders that may wait for the child, which is behind while much fails: each holds a copy of the particles. One order
 may be larger."""
 
-REPORT = "rsmpm_ti writer: "
-"""Begins the line by which the child says how it went; Taichi prints to the same pipe."""
+REPORT, READY = "rsmpm_ti writer: ", "rsmpm_ti writer is ready"
+"""Begins the line by which the child says how it went; the line that it is up. Taichi prints to the same pipe."""
 
 
 class Writer:
     """Paints and writes the files of one run in a process of its own. `warning`, `cpu_s`: known after `close`."""
 
-    def __init__(self, wanted: Commission):
+    def __init__(self, wanted: Commission, folder: RunFolder):
         """Starts the child, which gets ready while the caller goes on. Raises SceneError where it cannot be started."""
-        self.out, self.warning, self.cpu_s = wanted.out, "", 0.0
+        self.out, self.folder, self.warning, self.cpu_s = wanted.out, folder, "", 0.0
+        self._kinds, self._movie = wanted.kinds, (f"{wanted.name}.mp4",) if wanted.movie else ()
+        self._heard, self._problem = b"", ""
         package = str(Path(rsmpm_ti.__file__).resolve().parent.parent)
         paths = os.pathsep.join(filter(None, (package, os.environ.get("PYTHONPATH"))))
         try:
@@ -45,6 +49,7 @@ class Writer:
                 stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=self._errors,
                 env=os.environ | {"PYTHONPATH": paths},
                 start_new_session=True,  # Ctrl-C is for the solver, which then says what is still to be written
+                pass_fds=folder.lock.passed,
             )  # fmt: skip
         except OSError as error:
             raise SceneError(f"the process that paints and writes cannot be started: {error}") from None
@@ -52,23 +57,44 @@ class Writer:
         self._pending: list[tuple[int, Future]] = []  # bytes of each order on its way
         self._order("open", wanted)
 
-    def refilm(self, count: int) -> None:
-        """The movie begins with so many frames that are there already."""
-        self._order("refilm", count)
+    def ready(self) -> None:
+        """Wait until the child is up. Raises SceneError, with the child's reason, where it cannot be."""
+        assert self._child.stdout is not None
+        while READY.encode() not in self._heard:
+            byte = os.read(self._child.stdout.fileno(), 1)  # no more, since `communicate` reads the rest
+            if not byte:
+                self._end()
+            self._heard += byte
+
+    def refilm(self, numbers: list[int]) -> None:
+        """The movie begins with these frames, which are there already."""
+        if numbers:
+            self.folder.claim(*self._movie)
+            self._order("refilm", numbers)
 
     def frame(self, number: int, readout: Readout, history: np.ndarray) -> None:
+        self.folder.claim(*(frame_name(kind, number) for kind in self._kinds), *self._movie)
         self._order("frame", number, readout, history)
 
     def vtu(self, entries: list[tuple[float, str]], readout: Readout, instant: dict[str, float]) -> None:
         """entries: (time [s], file name) of every VTU so far, the last of which is to be written; instant: its field
         data."""
+        self.folder.claim(entries[-1][1], COLLECTION)
         self._order("vtu", entries, readout, instant)
 
+    def collect(self, entries: list[tuple[float, str]]) -> None:
+        """particles.pvd again, of these VTU files."""
+        self.folder.claim(COLLECTION)
+        self._order("collect", entries)
+
     def checkpoint(self, arrays: dict[str, np.ndarray]) -> None:
+        latest, previous = CHECKPOINTS
+        self.folder.claim(latest, *([previous] if latest in self.folder.names else []))
         self._order("checkpoint", arrays)
 
     def close(self, *last) -> None:
         """Wait for everything, the movie and summary.png last; arguments as of `Gallery.close`."""
+        self.folder.claim("summary.png")
         self._order("close", *last)
         self._settle(0)
         self._end()
@@ -88,6 +114,8 @@ class Writer:
 
         Raises SceneError, with the reason that the child gives, where it has ended.
         """
+        if self._problem:
+            raise SceneError(self._problem)
         message = pickle.dumps(order, protocol=5)
         self._settle(WAITING_BYTES - len(message))
         self._pending.append((len(message), self._sender.submit(self._send, message)))
@@ -109,19 +137,18 @@ class Writer:
         """Read the child's report; raise SceneError if it did not do everything."""
         self._sender.shutdown(cancel_futures=True)
         self._pending.clear()
-        output, _ = self._child.communicate()
+        output = self._heard + self._child.communicate()[0]
         lines = [line for line in output.decode(errors="replace").splitlines() if line.startswith(REPORT)]
         report = json.loads(lines[-1].removeprefix(REPORT)) if lines else {}
-        problem = report.get("problem", "") or self._silence()
+        problem = report.get("problem", self._silence())
         self._errors.close()
         if problem:
-            raise SceneError(f"{self.out} cannot be written: {problem}")
+            self._problem = f"{self.out} cannot be written: {problem}"
+            raise SceneError(self._problem)
         self.warning, self.cpu_s = report["warning"], report["cpu_s"]
 
     def _silence(self) -> str:
-        """Why a child that reported nothing has ended; "" if it ended well."""
-        if self._child.returncode == 0:
-            return ""
+        """Why a child that reported nothing has ended."""
         self._errors.seek(0)
         said = [line.strip() for line in self._errors.read().decode(errors="replace").splitlines() if line.strip()]
         reason = f": {said[-1]}" if said else ""

@@ -34,7 +34,10 @@ def text_chunk(key: str, note: str) -> bytes:
     return struct.pack(">I", len(body) - 4) + body + struct.pack(">I", zlib.crc32(body))
 
 
-def read_png(path: str | os.PathLike) -> np.ndarray:
-    """What `write_png` wrote, uint8 [h, w, 3]."""
+def read_png(path: str | os.PathLike, size: tuple[int, int]) -> np.ndarray:
+    """What `write_png` wrote, uint8 [h, w, 3]. Raises ValueError where it has another (width, height), before that is
+    decoded."""
     with Image.open(path) as picture:
+        if picture.size != size:
+            raise ValueError(f"{picture.size} pixels and not {size}")
         return np.array(picture.convert("RGB"))

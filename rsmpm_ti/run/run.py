@@ -10,7 +10,7 @@ from typing import Any
 from rsmpm_ti.analysis.load_curve import FilteredLoad
 from rsmpm_ti.backend.start import start_taichi
 from rsmpm_ti.errors import BrokenApart, ObserverError, RockWarning, SceneError, UnstableRun, refuse
-from rsmpm_ti.output.folder import prepare, write_record
+from rsmpm_ti.output.folder import RunFolder, named, prepare
 from rsmpm_ti.records.result import Progress, Result
 from rsmpm_ti.records.tables import Column
 from rsmpm_ti.run.finish import finish
@@ -29,6 +29,7 @@ def simulate(
     arch: str = "cpu",
     threads: int | None = None,
     deterministic: bool = False,
+    overwrite: bool = False,
     resume: bool = False,
     checkpoint_every: float = CHECKPOINT_S,
     progress: Callable[[Progress], None] | None = None,
@@ -38,12 +39,14 @@ def simulate(
     """Run a scene to its end and write every file of a run into `out` (nothing is written when `out` is None).
 
     precision: 'f64' or 'f32'; arch: 'cpu' or 'cuda'; threads: CPU threads, all by default; deterministic: the same
-    bits whatever the number of threads, on one kind of machine; resume: go on from the checkpoint in `out`, from the
-    start where there is none, of a run that was stopped or done: its end, rows and output may be others now, nothing
-    else; checkpoint_every: wall time between checkpoints [s]; progress: called after each history row; columns: more
-    columns of the history (`Column`); observers: more observers (`Observer`), whose states a checkpoint keeps, to be
-    given again, in the same order, to a run that resumes. Ctrl-C and SIGTERM stop after the step and still write what
-    there is. A specimen that bursts after its peak ends the run, which is then a result.
+    bits whatever the number of threads, on one kind of machine; overwrite: replace the run that is in `out`, which is
+    kept as `<out>.previous` until this one is complete; resume: go on from the checkpoint in `out`, from the start
+    where there is none, of a run that was stopped or done: its end, rows and output may be others now, nothing else.
+    Without either a folder with a run in it is refused. checkpoint_every: wall time between checkpoints [s]; progress:
+    called after each history row; columns: more columns of the history (`Column`); observers: more observers
+    (`Observer`), whose states a checkpoint keeps, to be given again, in the same order, to a run that resumes. Ctrl-C
+    and SIGTERM stop after the step and still write what there is. A specimen that bursts after its peak ends the run,
+    which is then a result.
     What is hard to believe in the scene comes as RockWarning, a sentence each, before it starts.
     Raises SceneError for input that cannot be run, before anything compiles, and when files cannot be written any
     more, and after writing everything up to there UnstableRun, or ObserverError where a column or observer raised.
@@ -53,21 +56,30 @@ def simulate(
         checkpoint_every=checkpoint_every, progress=progress, columns=_tuple(columns), observers=_tuple(observers),
     )  # fmt: skip
     settings.check(scene)
-    if resume and out is None:
-        raise refuse("resume", resume, "False without an output folder", "give the folder of the run as `out`")
+    for name, asked in (("overwrite", overwrite), ("resume", resume)):
+        if asked and out is None:
+            raise refuse(name, asked, "False without an output folder", "give the folder of the run as `out`")
+    if overwrite and resume:
+        raise refuse("overwrite", overwrite, "False with resume", "a run is replaced, or it goes on")
     seeds, kept = scene.particles(), None
     said = review(scene, seeds)
     for sentence in said:
         warnings.warn(sentence, RockWarning, stacklevel=2)
     if out is None:
         return Run(scene, seeds, None, settings, said=said).go()
-    if resume:
-        from rsmpm_ti.run.checkpoint import check_end, read
+    folder = prepare(scene, out, settings.name, settings.precision, overwrite=overwrite, resume=resume)
+    try:
+        if resume:
+            from rsmpm_ti.run.checkpoint import check_end, read
 
-        kept = read(Path(out), settings.identity(scene))
-        if kept is not None:
-            check_end(kept, scene)
-    return Run(scene, seeds, prepare(scene, out, keep=kept is not None), settings, kept, said).go()
+            kept = read(folder.path, settings.identity(scene))
+            if kept is None:
+                folder.start_anew()
+            else:
+                check_end(kept, scene)
+        return Run(scene, seeds, folder, settings, kept, said).go()
+    finally:
+        folder.release()
 
 
 def _tuple(entries):
@@ -82,22 +94,35 @@ class Run:
     to believe, in sentences.
     """
 
-    def __init__(self, scene: Scene, seeds, out: Path | None, settings: Settings, kept=None, said=()):
-        self.scene, self.out, self.settings, self.said = scene, out, settings, said
+    def __init__(self, scene: Scene, seeds, folder: RunFolder | None, settings: Settings, kept=None, said=()):
+        self.scene, self.folder, self.settings, self.said = scene, folder, settings, list(said)
+        self.out: Path | None = folder.path if folder is not None else None
         self.writer: Any = None  # an output.writer.Writer where files are written, imported only then: it needs Taichi
         self.begun = time.perf_counter()
-        if out is not None:  # first, since it gets ready while kernels compile here
+        if folder is not None:  # first, since it gets ready while kernels compile here
             from rsmpm_ti.output.pictures import commission
             from rsmpm_ti.output.writer import Writer
 
-            write_record(out, scene, settings.name, settings.precision)
             volume = float(sum(body.volume.sum() for body in seeds))
-            self.writer = Writer(commission(scene, settings.name, out, volume))
+            self.writer = Writer(commission(scene, settings.name, folder.path, volume), folder)
         try:
             self._set_up(seeds, kept)
+            if folder is not None:
+                self._open(folder)
         except BaseException:
             self._abandon()
             raise
+
+    def _open(self, folder: RunFolder) -> None:
+        """The folder becomes this run's only now that nothing can refuse the run any more."""
+        self.writer.ready()
+        folder.begin(goes_on=self.resumed)
+        if self.resumed:
+            lost = [name for files in self.files for name in files.go_on()]
+            if lost:
+                self.said.append(
+                    f"{named(lost)} of the part before --resume were missing or damaged, and cannot be made again"
+                )
 
     def _set_up(self, seeds, kept) -> None:
         from rsmpm_ti.run.checkpoint import changed, restore, restore_observers
@@ -164,6 +189,8 @@ class Run:
             self.late_failure: ObserverError | None = None
             result = finish(self, stopped, failure)
             failure = failure or self.late_failure
+            if failure is not None:
+                self._abandon()
         except BaseException:
             self._abandon()
             raise
