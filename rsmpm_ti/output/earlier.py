@@ -44,11 +44,15 @@ def check_place(previous: Path, run: Manifest | None) -> None:
         return
     there = manifest.read(previous) if is_folder(previous) else None
     fits = there is not None and run is not None and (there.state == ASIDE or there == replace(run, state=MOVING))
-    if not fits:
-        raise SceneError(
-            f"{previous} is in the way: the earlier run is kept there until the new one is complete; rename or remove "
-            f"it, or give another folder with --out"
-        )
+    if not fits or (mode_of(previous / manifest.FRAMES) and not is_folder(previous / manifest.FRAMES)):
+        raise _in_the_way(previous)
+
+
+def _in_the_way(path: Path) -> SceneError:
+    return SceneError(
+        f"{path} is in the way: the earlier run is kept there until the new one is complete; rename or remove it, or "
+        f"give another folder with --out"
+    )
 
 
 def set_aside(folder: Path, run: Manifest, previous: Path) -> None:
@@ -56,16 +60,19 @@ def set_aside(folder: Path, run: Manifest, previous: Path) -> None:
     previous.mkdir(exist_ok=True)
     with Lock(previous):
         there = manifest.read(previous)
+        if there is not None and there.state == ASIDE and not summary_of(folder).get("complete"):
+            _clear(folder, run)
+            return
+        names, listed = [name for name in run.names if is_file(folder, name)], there.names if there is not None else ()
+        for name in names:
+            if mode_of(previous / name) and name not in listed:  # of the user
+                raise _in_the_way(previous / name)
         if there is not None and there.state == ASIDE:
-            if not summary_of(folder).get("complete"):
-                _clear(folder, run)
-                return
             _clear(previous, there)
         manifest.write(previous, replace(run, state=MOVING))
-        for name in run.names:
-            if is_file(folder, name):
-                (previous / name).parent.mkdir(exist_ok=True)
-                os.rename(folder / name, previous / name)
+        for name in names:
+            (previous / name).parent.mkdir(exist_ok=True)
+            os.rename(folder / name, previous / name)
         _clear(folder, run)
         manifest.write(previous, replace(run, state=ASIDE))
 

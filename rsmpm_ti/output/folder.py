@@ -197,7 +197,10 @@ class RunFolder:
                 raise refuse("name", name, "a name of a run's file")
             self._check_free(name)
         if new:
-            manifest.append(self.path, new)
+            try:
+                manifest.append(self.path, new)
+            except OSError as error:
+                raise unwritable(self.path, error) from None
             self._names.update(new)
 
     def file(self, name: str) -> Path:

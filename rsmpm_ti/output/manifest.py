@@ -4,6 +4,7 @@ A name is on the disk in the list before its file is first made, so that no kill
 may come from a stranger: only names that this program gives are read from it, all of them within the folder.
 """
 
+import errno
 import os
 import re
 import stat
@@ -96,10 +97,16 @@ def write(folder: Path, manifest: Manifest) -> None:
 
 def append(folder: Path, names: Iterable[str]) -> None:
     """More names, on the disk on return."""
+    lines = "".join(f"{name}\n" for name in names).encode("utf-8", "surrogateescape")
     descriptor = os.open(folder / FILE, os.O_WRONLY | os.O_APPEND | getattr(os, "O_NOFOLLOW", 0))
+    size = os.fstat(descriptor).st_size
     try:
-        os.write(descriptor, "".join(f"{name}\n" for name in names).encode("utf-8", "surrogateescape"))
+        if os.write(descriptor, lines) < len(lines):
+            raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC), str(folder / FILE))
         os.fsync(descriptor)
+    except OSError:
+        os.ftruncate(descriptor, size)  # half a name would make no list of it
+        raise
     finally:
         os.close(descriptor)
 

@@ -5,17 +5,14 @@ from dataclasses import replace
 from pathlib import Path
 
 import pytest
+from folders import FILES, SCENE, begun, contents, mark_of, refusal, run
 
-from rsmpm_ti import load_scene
 from rsmpm_ti.errors import SceneError
 from rsmpm_ti.output import lock, manifest
 from rsmpm_ti.output.earlier import previous_of
-from rsmpm_ti.output.folder import FolderGone, RunFolder, prepare, write_all
+from rsmpm_ti.output.folder import FolderGone, prepare, write_all
 from rsmpm_ti.records.files import write_json
-from rsmpm_ti.spec.scene import Output
 
-SCENE = replace(load_scene("cube", quick=True), output=Output(frames=2, vtu=1))
-FILES = ("frames/stress_0000.png", "frames/cracks_0000.png", "particles_0000.vtu", "history.csv")
 YOURS = (
     "checkpoint_mine.npz", "frames/photo_0001.png", "frames/stress_0001_small.png", "particles_0099.vtu",
     ".notes.part1", ".writable", "frames/.thumbs.part.png", "notes.txt",
@@ -26,48 +23,6 @@ YOURS = (
 def no_loss_of_power(monkeypatch):
     """Nothing here waits for the disk."""
     monkeypatch.setattr(os, "fsync", lambda _: None)
-
-
-def contents(folder: Path) -> dict[str, bytes]:
-    found = {str(p.relative_to(folder)): p.read_bytes() for p in folder.rglob("*") if p.is_file()}
-    return {name: data for name, data in found.items() if name != lock.FILE}
-
-
-def begun(out: Path, **how) -> RunFolder:
-    folder = prepare(SCENE, out, "cube", **how)
-    folder.begin(goes_on=bool(how.get("resume")))
-    return folder
-
-
-def run(out: Path, mark: str, complete: bool = True, **how) -> None:
-    """What a run leaves in its folder, without running."""
-    folder = begun(out, **how)
-    try:
-        for name in FILES:
-            folder.file(name).write_text(mark)
-        write_json(folder.file("summary.json"), {"mark": mark, "complete": complete})
-        folder.verify()
-        if complete:
-            folder.complete()
-    finally:
-        folder.release()
-
-
-def refusal(out: Path, **how) -> str:
-    before = contents(out)
-    with pytest.raises(SceneError) as refused:
-        prepare(SCENE, out, "cube", **how)
-    assert contents(out) == before and "\n" not in str(refused.value)
-    return str(refused.value)
-
-
-def mark_of(folder: Path) -> str:
-    """Of the one run whose files, and no others', are in a folder; "" where there is no run."""
-    listed = manifest.read(folder)
-    names = () if listed is None else [name for name in listed.names if name in FILES and (folder / name).exists()]
-    marks = {(folder / name).read_text() for name in names}
-    assert len(marks) <= 1, "files of two runs"
-    return marks.pop() if marks else ""
 
 
 def test_a_run_is_refused_where_one_is_unless_it_replaces_it_or_goes_on(tmp_path):
@@ -133,53 +88,30 @@ def test_something_else_in_the_place_of_the_run_before_is_refused(tmp_path):
     assert mark_of(previous) == "a run of its own"
 
 
-CALLS = ("rename", "replace", "unlink", "mkdir")
-
-
-def killed_at(count: int, monkeypatch, work) -> bool:
-    """Whether work, in a process of its own, ended before its `count`-th change to the disk, at which it is killed."""
-    left = count
-
-    def dying(call):
-        def change(*arguments, **keywords):
-            nonlocal left
-            left -= 1
-            if left < 0:
-                os._exit(1)
-            return call(*arguments, **keywords)
-
-        return change
-
-    child = os.fork()
-    if child == 0:
-        for name in CALLS:
-            monkeypatch.setattr(os, name, dying(getattr(os, name)))
-        try:
-            work()
-            os._exit(0)
-        finally:
-            os._exit(2)
-    status = os.waitstatus_to_exitcode(os.waitpid(child, 0)[1])
-    assert status in (0, 1)
-    return status == 0
-
-
-def test_killed_anywhere_a_rerun_loses_no_complete_run(tmp_path, monkeypatch):
-    """At every single change to the disk; then again to the end."""
-    count, done = 0, False
-    while not done:
-        out = tmp_path / f"{count}"
-        run(out, "first")
-        done = killed_at(count, monkeypatch, lambda out=out: run(out, "second", overwrite=True))
-        kept = [folder / name for name in FILES for folder in (out, previous_of(out)) if (folder / name).exists()]
-        marks = [path.read_text() for path in kept]
-        assert len(FILES) in (marks.count("first"), marks.count("second")), f"killed at change {count}"
-        assert mark_of(out) in ("", "first", "second")  # of one run alone
+def test_what_the_user_put_beside_the_run_that_was_set_aside_stays(tmp_path):
+    out, previous = tmp_path / "out", tmp_path / "out.previous"
+    run(out, "first")
+    run(out, "second", complete=False, overwrite=True)
+    run(out, "second", resume=True, complete=False)
+    names = manifest.read(previous)
+    (previous / "history.csv").write_text("yours")
+    manifest.write(previous, replace(names, names=tuple(name for name in names.names if name != "history.csv")))
+    write_json(out / "summary.json", {"complete": True})
+    with pytest.raises(SceneError, match="history.csv is in the way"):
         run(out, "third", overwrite=True)
-        assert contents(out).keys() == {*FILES, "scene.json", "summary.json", manifest.FILE}
-        assert mark_of(out) == "third" and not previous_of(out).exists(), f"killed at change {count}"
-        count += 1
-    assert count > 30
+    assert (previous / "history.csv").read_text() == "yours"
+    assert (mark_of(out), (previous / FILES[0]).read_text()) == ("second", "first")
+
+
+def test_a_full_disk_leaves_a_list(tmp_path, monkeypatch):
+    folder, write = begun(tmp_path), os.write
+    with monkeypatch.context() as patch:
+        patch.setattr(os, "write", lambda descriptor, data: write(descriptor, data[:5]))
+        with pytest.raises(SceneError, match="cannot be written: No space left on device"):
+            folder.file("history.csv")
+    folder.file("events.csv")
+    folder.release()
+    assert manifest.read(tmp_path).names == ("scene.json", "events.csv")
 
 
 HEAD = f"{manifest.HEAD}, {'0' * 32}, here\n"
