@@ -118,7 +118,7 @@ class Run:
         self.writer.ready()
         folder.begin(goes_on=self.resumed)
         if self.resumed:
-            lost = [name for files in self.files for name in files.go_on()]
+            lost = [name for files in self.files for name in files.go_on(self.view())]
             if lost:
                 self.said.append(
                     f"{named(lost)} of the part before --resume were missing or damaged, and cannot be made again"

@@ -1,6 +1,7 @@
 """The command and its folder: what a refused, a second, a resumed and a disturbed run leave there."""
 
 import json
+import re
 import shutil
 import subprocess
 import sys
@@ -69,8 +70,10 @@ def test_the_default_folder_renews_itself_and_keeps_nothing_of_the_run_before(tm
 
 
 def test_frames_and_particle_files_that_are_lost_are_named_and_the_run_goes_on_without_them(out, capsys):
+    before = contents(out)
     (out / "frames" / "stress_0001.png").unlink()
-    for name in ("frames/cracks_0002.png", "particles_0001.vtu", "history.csv"):
+    again = ("frames/cracks_0003.png", "particles_0002.vtu", "history.csv")  # the last are of the checkpoint's state
+    for name in ("frames/cracks_0002.png", "particles_0001.vtu", *again):
         (out / name).write_bytes(b"")
     assert main([*RUN, "--out", str(out), "--resume"]) == 0
     lost = "frames/cracks_0002.png, frames/stress_0001.png, particles_0001.vtu of the part before --resume"
@@ -81,6 +84,9 @@ def test_frames_and_particle_files_that_are_lost_are_named_and_the_run_goes_on_w
     assert "particles_0001" not in (out / "particles.pvd").read_text()
     assert sum(1 for _ in imageio.imiter(out / "intact.mp4", plugin="FFMPEG")) == 2
     left = contents(out)
+    # but for the load then, which a checkpoint does not know before the next row: it is left out of the field data
+    same = {name: re.sub(rb"<DataArray[^>]*nominal_stress_Pa.*?\n", b"", before[name]) for name in again}
+    assert [name for name in again if left[name] != same[name]] == []
     assert all(left.values()) and "particles_0001.vtu" not in left, "nothing that is empty"
     assert left["frames/stress_0001_small.png"] == b"yours"
 
