@@ -14,6 +14,7 @@ help:
 	@echo 'make cube        slit cube in uniaxial compression    -> renders/cube/'
 	@echo 'make disc        slit disc in diametral compression   -> renders/disc/'
 	@echo 'make intact      cube without a flaw                  -> renders/intact/'
+	@echo '                 (each replaces its run of before; into ARGS="--out DIR" only with --overwrite)'
 	@echo 'make test        the test suite'
 	@echo 'make lint        ruff check, ruff format --check, mypy'
 	@echo 'make validation  the longer tier of tests'

@@ -54,6 +54,11 @@ def parser() -> argparse.ArgumentParser:
     p.add_argument("--precision", choices=("f64", "f32"), default="f64")
     p.add_argument("--threads", type=int, metavar="N", help="CPU threads (default: all)")
     p.add_argument("--deterministic", action="store_true", help="the same bits with any number of threads")
+    p.add_argument(
+        "--overwrite",
+        action="store_true",
+        help="replace the run in --out, kept as DIR.previous until the new one is complete (renders/<scene>: always)",
+    )
     p.add_argument("--resume", action="store_true", help="go on from the checkpoint in the output folder")
     p.add_argument("--checkpoint-every", type=float, default=60.0, metavar="S", help="seconds between checkpoints")
     p.add_argument("--list", action="store_true", help="list the scenes and their keywords")
@@ -223,8 +228,8 @@ def run(scene: Scene, options: argparse.Namespace) -> int:
 
         result = simulate(
             scene, out=out, name=name, precision=options.precision, arch=options.arch, threads=options.threads,
-            deterministic=options.deterministic, resume=options.resume, checkpoint_every=options.checkpoint_every,
-            progress=show,
+            deterministic=options.deterministic, overwrite=options.overwrite or not (options.out or options.resume),
+            resume=options.resume, checkpoint_every=options.checkpoint_every, progress=show,
         )  # fmt: skip
     print(report(result))
     return 128 + result.signal if result.signal else 0

@@ -161,6 +161,7 @@ def test_options_change_what_they_say():
 
 def test_recorded_scene_is_a_scene_again(command, tmp_path):
     path = tmp_path / "cube" / "scene.json"
+    path.parent.mkdir()
     write_json(path, {"name": "cube", "scene": to_plain(load_scene("cube", quick=True))})
     again, first = command(str(path), "--check", "--frames", "10"), command("cube", "--quick", "--check")
     timed = "estimate"  # by a loop that takes a little more or less each time

@@ -5,6 +5,7 @@ from dataclasses import replace
 import numpy as np
 
 from rsmpm_ti import load_scene
+from rsmpm_ti.output.folder import prepare
 from rsmpm_ti.output.pictures import commission
 from rsmpm_ti.output.writer import Writer
 from rsmpm_ti.records.history_table import HISTORY_COLUMNS
@@ -15,5 +16,7 @@ NO_ROWS = np.zeros(0, dtype=[(name, float) for name in HISTORY_COLUMNS])
 
 def started(out) -> Writer:
     scene = replace(load_scene("cube", quick=True), output=Output(frames=1, movie=False))
-    (out / "frames").mkdir()
-    return Writer(commission(scene, "cube", out, 5e-3))
+    folder = prepare(scene, out, "cube")
+    writer = Writer(commission(scene, "cube", out, 5e-3), folder)
+    folder.begin()
+    return writer

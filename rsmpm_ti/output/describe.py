@@ -19,11 +19,13 @@ HEAD = """\
 <!-- Printed by `python -m rsmpm_ti.output.describe`; edit the tables in rsmpm_ti/records and rsmpm_ti/output. -->
 
 A run writes into one folder, `renders/NAME` unless `--out` says otherwise. Every file appears under its name only when
-it is complete. SI units throughout; angles in degrees. Stresses of the load curve are compression positive, as tests
-report them; stresses of particles and failures are tension positive. In 2D energies, masses and forces are per metre of
-thickness. In a CSV an empty cell means *not defined*, and so does `null` in JSON and `NaN` in a VTU file: a number that
-is not finite is never written otherwise, and no 0 in place of it. Numbers in a CSV have ten digits. A name with
-`{axis}` stands for one column for each axis: x, y and in 3D z.
+it is complete and on the disk. `manifest.txt` lists the files of the run: what is not on it is yours, and is never
+removed, moved or replaced. A folder is at any time of one run; while that is under way, `summary.json` is not there or
+says that it is not complete. SI units throughout; angles in degrees. Stresses of the load curve are compression
+positive, as tests report them; stresses of particles and failures are tension positive. In 2D energies, masses and
+forces are per metre of thickness. In a CSV an empty cell means *not defined*, and so does `null` in JSON and `NaN` in a
+VTU file: a number that is not finite is never written otherwise, and no 0 in place of it. Numbers in a CSV have ten
+digits. A name with `{axis}` stands for one column for each axis: x, y and in 3D z.
 
 | file | what it is |
 |---|---|
@@ -32,6 +34,7 @@ is not finite is never written otherwise, and no 0 in place of it. Numbers in a 
 | `frames/margin_0000.png`, ... | how near the rock is to failure; with `--margin` |
 | `NAME.mp4` | cracks on the left, stress on the right, of all frames |
 | `summary.png` | the load curve with acoustic events; the cracks at the largest load and at the end |
+| `manifest.txt` | the files of this run, a name a line, each listed before it is made |
 """
 
 TAIL = """\

@@ -21,12 +21,8 @@ def write_history(path: Path, history: np.ndarray) -> None:
     write_csv(path, history.dtype.names or (), history.tolist())
 
 
-def write_reactions(path: Path, reactions: np.ndarray | None) -> None:
-    """reactions.csv; without boundaries that of an earlier run is removed."""
-    if reactions is None:
-        path.unlink(missing_ok=True)
-    else:
-        write_csv(path, reactions.dtype.names or (), reactions.tolist())
+def write_reactions(path: Path, reactions: np.ndarray) -> None:
+    write_csv(path, reactions.dtype.names or (), reactions.tolist())
 
 
 def write_events(path: Path, events: EventTable) -> None:
@@ -105,12 +101,41 @@ CHECKPOINTS = ("checkpoint.npz", "checkpoint.previous.npz")
 
 
 def write_checkpoint(folder: Path, arrays: dict[str, np.ndarray]) -> None:
-    """Arrays only, no pickle: loading a checkpoint runs nobody's code. It is on the disk before it gets its name."""
+    """Arrays only, no pickle: loading a checkpoint runs nobody's code."""
     latest, previous = (Path(folder) / name for name in CHECKPOINTS)
     with complete(latest) as part:
         with open(part, "wb") as file:
             np.savez(file, **arrays)  # type: ignore[arg-type]  # no array is named like its keyword allow_pickle
-            file.flush()
-            os.fsync(file.fileno())
         if latest.exists():
             os.replace(latest, previous)
+
+
+COLLECTION = "particles.pvd"
+
+
+def frame_name(kind: str, number: int) -> str:
+    """Of a picture, within the folder of its run."""
+    return f"frames/{kind}_{number:04d}.png"
+
+
+def vtu_name(number: int) -> str:
+    return f"particles_{number:04d}.vtu"
+
+
+def number_of(name: str) -> int:
+    """The number in the name of a frame or a particle file."""
+    return int(name.rpartition("_")[2].partition(".")[0])
+
+
+ENDS = {".png": b"\x00\x00\x00\x00IEND\xaeB`\x82", ".vtu": b"</VTKFile>"}
+"""Files of these kinds end so; one that was cut or emptied does not."""
+
+
+def whole(path: Path) -> bool:
+    """Whether a picture or particle file has its end."""
+    try:
+        with open(path, "rb") as file:
+            file.seek(-min(64, os.fstat(file.fileno()).st_size), os.SEEK_END)
+            return file.read().rstrip().endswith(ENDS[path.suffix])
+    except OSError:
+        return False

@@ -229,16 +229,16 @@ class Heard:
     time_scale: float
 
 
-def write_fracture(out: Path, fracture: Fracture, history: np.ndarray) -> None:
-    """cracks.csv, fragments.csv and acoustic.csv; with nothing in them, their headers."""
+def write_fracture(file: Callable[[str], Path], fracture: Fracture, history: np.ndarray) -> None:
+    """cracks.csv, fragments.csv and acoustic.csv; with nothing in them, their headers. file: the path of a name."""
     scale = fracture.time_scale
     pieces = [Named(name=k, fragment=piece, time_scale=scale) for k, piece in enumerate(fracture.fragments.pieces)]
     if fracture.fragments.dust is not None:
         pieces.append(Named(name="dust", fragment=fracture.fragments.dust, time_scale=scale))
     heard = Heard(fracture.acoustic, load_at(history, fracture.acoustic.time)[0], scale)
-    write_table(out / CRACKS.file, CRACKS, _crack_rows(fracture, history), fracture.dim)
-    write_table(out / FRAGMENTS.file, FRAGMENTS, pieces, fracture.dim)
-    write_table(out / ACOUSTIC.file, ACOUSTIC, heard, fracture.dim)
+    write_table(file(CRACKS.file), CRACKS, _crack_rows(fracture, history), fracture.dim)
+    write_table(file(FRAGMENTS.file), FRAGMENTS, pieces, fracture.dim)
+    write_table(file(ACOUSTIC.file), ACOUSTIC, heard, fracture.dim)
 
 
 def _crack_rows(fracture: Fracture, history: np.ndarray) -> list[CrackRow]:

@@ -1,11 +1,10 @@
 """The pictures of one run: frames, the movie that is made of them, and summary.png."""
 
-import contextlib
 from collections.abc import Sequence
-from pathlib import Path
 
 import numpy as np
 
+from rsmpm_ti.output.files import frame_name
 from rsmpm_ti.output.pictures import Commission
 from rsmpm_ti.paint.figure import FramePainter
 from rsmpm_ti.paint.movie import Movie
@@ -35,13 +34,24 @@ class Gallery:
     def write(self, number: int, images: dict[str, np.ndarray]) -> None:
         """Frames to files and into the movie; in order of their numbers."""
         for kind, image in images.items():
-            write_png(frame_path(self._out, kind, number), image, painter=self._wanted.painters["backend"])
+            write_png(self._out / frame_name(kind, number), image, painter=self._wanted.painters["backend"])
         self._film(images["stress"], images["cracks"])
 
-    def refilm(self, count: int) -> None:
-        """Begin the movie with the first `count` frames of a run that goes on, from their files."""
-        for number in range(count):
-            self._film(*(read_png(frame_path(self._out, kind, number)) for kind in ("stress", "cracks")))
+    def refilm(self, numbers: list[int]) -> None:
+        """Begin the movie with frames of a run that goes on, from their files, without those that are damaged."""
+        for number in numbers:
+            try:
+                pictures = [self._read(kind, number) for kind in ("stress", "cracks")]
+            except (OSError, ValueError, SyntaxError) as error:  # Pillow raises each of them
+                self._warn(f"the movie goes without frame {number:04d}, which is damaged ({error})")
+                continue
+            self._film(*pictures)
+
+    def _read(self, kind: str, number: int) -> np.ndarray:
+        return read_png(self._out / frame_name(kind, number), self.painters[kind].layout.size)
+
+    def _warn(self, sentence: str) -> None:
+        self.warning = "; ".join(filter(None, (self.warning, sentence)))
 
     def _film(self, stress: np.ndarray, cracks: np.ndarray) -> None:
         """A movie that fails, for whatever reason, costs the movie alone."""
@@ -52,11 +62,8 @@ class Gallery:
                 self._unfilmed(error)
 
     def _unfilmed(self, error: Exception) -> None:
-        assert self._movie is not None
-        self.warning = f"no movie is written: {error or type(error).__name__}"
+        self._warn(f"no movie is written: {error or type(error).__name__}")
         self.discard()
-        with contextlib.suppress(OSError):  # of a run that goes on: it would show the run's first part alone
-            self._movie.path.unlink(missing_ok=True)
         self._movie = None
 
     def discard(self) -> None:
@@ -89,7 +96,3 @@ class Gallery:
         )  # fmt: skip
         for painter in self.painters.values():
             painter.close()
-
-
-def frame_path(out: Path, kind: str, number: int) -> Path:
-    return out / "frames" / f"{kind}_{number:04d}.png"

@@ -2,7 +2,8 @@
 
 import math
 
-from rsmpm_ti.output.folder import forget
+from rsmpm_ti.output.files import frame_name, number_of, vtu_name
+from rsmpm_ti.output.manifest import FRAMES
 from rsmpm_ti.output.writer import Writer
 from rsmpm_ti.records.snapshot import INSTANT, Pattern
 from rsmpm_ti.solver.observer import Observer
@@ -23,11 +24,12 @@ class Frames(Observer):
         self._jump = max(1.0, JUMP_FRACTION * particle_count)
         self._used, self._next = 0, 0  # frames added at jumps; the next one that is due
         self._failed, self._count = 0.0, 0
+        self._time = -1.0  # of the last frame
 
     def see(self, view: View) -> None:
         if self._due(view.fraction, float(view.survey.failed_tension + view.survey.failed_shear)):
             self._writer.frame(self._count, view.readout, view.history)
-            self._count += 1
+            self._count, self._time = self._count + 1, view.time
 
     def _due(self, fraction: float, failed: float) -> bool:
         """failed: particles failed so far."""
@@ -44,13 +46,33 @@ class Frames(Observer):
         return due
 
     def state(self) -> dict:
-        return {"next": self._next, "used": self._used, "failed": self._failed, "count": self._count}
+        return {
+            "next": self._next,
+            "used": self._used,
+            "failed": self._failed,
+            "count": self._count,
+            "time": self._time,
+        }
 
     def resume(self, state: dict) -> None:
         self._next, self._used = state["next"], state["used"]
-        self._failed, self._count = state["failed"], state["count"]
-        forget(self._writer.out, "frames/*_[0-9]*.png", keep=self._count)
-        self._writer.refilm(self._count)
+        self._failed, self._count, self._time = state["failed"], state["count"], state["time"]
+
+    def go_on(self, view: View) -> list[str]:
+        """Remove what a run that was killed had painted after its checkpoint, film what is there before it, paint a
+        last frame again that is of the checkpoint's own state. Returns the names of what is lost."""
+        folder = self._writer.folder
+        there = [name for name in folder.names if name.startswith(f"{FRAMES}/")]
+        folder.remove([name for name in there if number_of(name) >= self._count])
+        filmed = {frame_name(kind, number): number for number in range(self._count) for kind in ("stress", "cracks")}
+        lost = folder.lost(sorted({*filmed, *(name for name in there if number_of(name) < self._count)}))
+        last = self._count - 1
+        again = self._time == view.time and any(number_of(name) == last for name in lost)
+        gaps = {filmed.get(name) for name in lost} | ({last} if again else set())
+        self._writer.refilm([number for number in range(self._count) if number not in gaps])
+        if again:
+            self._writer.frame(last, view.readout, view.history)
+        return [name for name in lost if not (again and number_of(name) == last)]
 
     def realign(self, fraction: float) -> None:
         self._next = math.floor(fraction * self._frames + 1e-9) + 1 if self._count else 0
@@ -94,20 +116,39 @@ class ParticleFiles(Observer):
         """files: how many, beside that of the start; 0 for none at all."""
         self._writer, self._files, self.every = writer, files, 1.0 / max(files, 1)
         self._entries: list[tuple[float, str]] = []
+        self._lost: set[str] = set()
 
     def see(self, view: View) -> None:
         if self._files == 0:
             return
-        self._entries.append((view.time, f"particles_{len(self._entries):04d}.vtu"))
+        self._entries.append((view.time, vtu_name(len(self._entries))))
+        self._write(view)
+
+    def _write(self, view: View) -> None:
         instant = {column.name: float(column.value(view)) for column in INSTANT.columns if column.value is not None}
-        self._writer.vtu(list(self._entries), view.readout, instant)
+        self._writer.vtu(self._there(), view.readout, instant)
+
+    def _there(self) -> list[tuple[float, str]]:
+        return [entry for entry in self._entries if entry[1] not in self._lost]
 
     def state(self) -> dict:
         return {"entries": self._entries}
 
     def resume(self, state: dict) -> None:
         self._entries = [tuple(entry) for entry in state["entries"]]
-        forget(self._writer.out, "particles_[0-9]*.vtu", keep=len(self._entries))
+
+    def go_on(self, view: View) -> list[str]:
+        """As `Frames.go_on`; particles.pvd is written again without what is lost."""
+        folder = self._writer.folder
+        there = [name for name in folder.names if name.endswith(".vtu")]
+        folder.remove([name for name in there if number_of(name) >= len(self._entries)])
+        self._lost = set(folder.lost([name for _, name in self._entries]))
+        if self._entries and self._entries[-1][1] in self._lost and self._entries[-1][0] == view.time:
+            self._lost.remove(self._entries[-1][1])
+            self._write(view)
+        elif self._entries:
+            self._writer.collect(self._there())
+        return sorted(self._lost)
 
     def catch_up(self, view: View) -> None:
         """The first file of a run that was done without any."""

@@ -35,10 +35,14 @@ def commission(scene: Scene, name: str, out: Path, volume: float) -> Commission:
         "strain_limit": strain, "load_limit": load, "backend": scene.output.painter, "softens": softens(scene),
         "load_name": load_name(scene),
     }  # fmt: skip
-    kinds = ("stress", "cracks", "margin") if scene.output.margin else ("stress", "cracks")
     return Commission(
-        kinds=kinds, painters=painters, title=scene.title, name=name, movie=scene.output.movie, out=Path(out)
+        kinds=kinds_of(scene), painters=painters, title=scene.title, name=name, movie=scene.output.movie, out=Path(out)
     )
+
+
+def kinds_of(scene: Scene) -> tuple[str, ...]:
+    """Of frames."""
+    return ("stress", "cracks", "margin") if scene.output.margin else ("stress", "cracks")
 
 
 def load_name(scene: Scene) -> str:

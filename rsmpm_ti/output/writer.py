@@ -28,6 +28,8 @@ import numpy as np
 
 import rsmpm_ti
 from rsmpm_ti.errors import SceneError
+from rsmpm_ti.output.files import COLLECTION, frame_name
+from rsmpm_ti.output.folder import RunFolder
 from rsmpm_ti.output.pictures import Commission
 from rsmpm_ti.solver.readout import Readout
 
@@ -35,9 +37,9 @@ WAITING_BYTES = 512 * 2**20
 """Orders that may wait for the child, which is behind while much fails: each holds a copy of the particles. One order
 may be larger."""
 
-REPORT, ALIVE = "rsmpm_ti writer: ", "rsmpm_ti writer is alive"
-"""The line by which the child says how it went begins with the one, a sign of life is the other; Taichi prints to the
-same pipe."""
+REPORT, READY, ALIVE = "rsmpm_ti writer: ", "rsmpm_ti writer is ready", "rsmpm_ti writer is alive"
+"""The line by which the child says how it went begins with the first; it is up by the second; the third is a sign of
+life. Taichi prints to the same pipe."""
 
 PATIENCE = 45.0
 """Seconds without a sign of life after which the child counts as stuck, while it is waited for. Its longest silence,
@@ -47,12 +49,13 @@ compiling its kernels beside a busy solver, is a few."""
 class Writer:
     """Paints and writes the files of one run in a process of its own. `warning`, `cpu_s`: known after `close`."""
 
-    def __init__(self, wanted: Commission, hurried: Callable[[], bool] = lambda: False):
+    def __init__(self, wanted: Commission, folder: RunFolder, hurried: Callable[[], bool] = lambda: False):
         """Starts the child, which gets ready while the caller goes on. Raises SceneError where it cannot be started.
 
         hurried: whether whoever waits for the child wants to wait no longer.
         """
-        self.out, self.warning, self.cpu_s, self.problem = wanted.out, "", 0.0, ""
+        self.out, self.folder, self.warning, self.cpu_s, self.problem = wanted.out, folder, "", 0.0, ""
+        self._kinds, self._movie = wanted.kinds, (f"{wanted.name}.mp4",) if wanted.movie else ()
         self._hurried = hurried
         package = str(Path(rsmpm_ti.__file__).resolve().parent.parent)
         paths = os.pathsep.join(filter(None, (package, os.environ.get("PYTHONPATH"))))
@@ -63,10 +66,12 @@ class Writer:
                 stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=self._errors,
                 env=os.environ | {"PYTHONPATH": paths},
                 start_new_session=True,  # Ctrl-C is for the solver, which then says what is still to be written
+                pass_fds=folder.lock.passed,
             )  # fmt: skip
         except OSError as error:
             raise SceneError(f"the process that paints and writes cannot be started: {error}") from None
         self._report: dict = {}
+        self._ready = False
         self._heard = time.monotonic()
         self._listener = threading.Thread(target=self._listen, daemon=True)
         self._listener.start()
@@ -74,23 +79,41 @@ class Writer:
         self._pending: list[tuple[int, Future]] = []  # bytes of each order on its way
         self._order("open", wanted)
 
-    def refilm(self, count: int) -> None:
-        """The movie begins with so many frames that are there already."""
-        self._order("refilm", count)
+    def ready(self) -> None:
+        """Wait until the child is up. Raises as `check`."""
+        self._wait(lambda: self._ready or self._child.poll() is not None)
+        if not self._ready:
+            self._end()
+        self.check()
+
+    def refilm(self, numbers: list[int]) -> None:
+        """The movie begins with these frames, which are there already."""
+        if numbers:
+            self._claim(*self._movie)
+            self._order("refilm", numbers)
 
     def frame(self, number: int, readout: Readout, history: np.ndarray) -> None:
+        self._claim(*(frame_name(kind, number) for kind in self._kinds), *self._movie)
         self._order("frame", number, readout, history)
 
     def vtu(self, entries: list[tuple[float, str]], readout: Readout, instant: dict[str, float]) -> None:
         """entries: (time [s], file name) of every VTU so far, the last of which is to be written; instant: its field
         data."""
+        self._claim(entries[-1][1], COLLECTION)
         self._order("vtu", entries, readout, instant)
 
+    def collect(self, entries: list[tuple[float, str]]) -> None:
+        """particles.pvd again, of these VTU files."""
+        self._claim(COLLECTION)
+        self._order("collect", entries)
+
     def checkpoint(self, arrays: dict[str, np.ndarray]) -> None:
+        self._claim(*self.folder.checkpoint_names())
         self._order("checkpoint", arrays)
 
     def close(self, *last) -> None:
         """Wait for everything, the movie and summary.png last; arguments as of `Gallery.close`. Raises as `check`."""
+        self._claim("summary.png")
         self._order("close", *last)
         self._wait(lambda: self._child.poll() is not None)
         self._end()
@@ -109,6 +132,11 @@ class Writer:
         for pipe in filter(None, (self._child.stdin, self._child.stdout, self._errors)):
             with contextlib.suppress(OSError):  # what was not sent cannot be
                 pipe.close()
+
+    def _claim(self, *names: str) -> None:
+        """Before the order for files; none of theirs is made after a problem."""
+        if not self.problem:
+            self.folder.claim(*names)
 
     def _order(self, *order) -> None:
         """Hand an order over, beside the caller; wait while too much is on its way. After a problem: nothing."""
@@ -147,6 +175,7 @@ class Writer:
         with contextlib.suppress(OSError, ValueError):  # closed by `abandon`
             for line in self._child.stdout:
                 self._heard = time.monotonic()
+                self._ready = self._ready or line.startswith(READY.encode())
                 if line.startswith(REPORT.encode()):
                     self._report = json.loads(line[len(REPORT) :])
 

@@ -12,8 +12,8 @@ from concurrent.futures import ThreadPoolExecutor
 from typing import Any
 
 from rsmpm_ti.backend.start import start_taichi
-from rsmpm_ti.output.files import write_checkpoint, write_pvd, write_vtu
-from rsmpm_ti.output.writer import ALIVE, REPORT
+from rsmpm_ti.output.files import COLLECTION, write_checkpoint, write_pvd, write_vtu
+from rsmpm_ti.output.writer import ALIVE, READY, REPORT
 
 NICENESS = 10
 """The solver goes first; painting takes the time that its threads leave."""
@@ -39,16 +39,20 @@ class Desk:
         self.out = wanted.out
         start_taichi("f64", "cpu", 1)
         self.gallery = Gallery(wanted)
+        print(READY, flush=True)
 
-    def refilm(self, count: int) -> None:
-        self._later(self.gallery.refilm, count)
+    def refilm(self, numbers: list[int]) -> None:
+        self._later(self.gallery.refilm, numbers)
 
     def frame(self, number: int, readout, history) -> None:
         self._later(self.gallery.write, number, self.gallery.paint(number, readout.snapshot(), history))
 
     def vtu(self, entries, readout, instant) -> None:
         self._later(write_vtu, self.out / entries[-1][1], readout.snapshot(), instant)
-        self._later(write_pvd, self.out / "particles.pvd", entries)
+        self.collect(entries)
+
+    def collect(self, entries) -> None:
+        self._later(write_pvd, self.out / COLLECTION, entries)
 
     def checkpoint(self, arrays) -> None:
         self._later(write_checkpoint, self.out, arrays)

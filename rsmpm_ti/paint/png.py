@@ -33,8 +33,12 @@ def text_chunk(key: str, note: str) -> bytes:
     return struct.pack(">I", len(body) - 4) + body + struct.pack(">I", zlib.crc32(body))
 
 
-def read_png(path: str | os.PathLike) -> np.ndarray:
-    """What `write_png` wrote, uint8 [h, w, 3]."""
-    from imageio.v3 import imread
+def read_png(path: str | os.PathLike, size: tuple[int, int]) -> np.ndarray:
+    """What `write_png` wrote, uint8 [h, w, 3]. Raises ValueError where it has another (width, height), before that is
+    decoded."""
+    from imageio.v3 import improps, imread
 
+    height, width = improps(path, plugin="pillow").shape[:2]
+    if (width, height) != size:
+        raise ValueError(f"{width} x {height} pixels and not {size[0]} x {size[1]}")
     return imread(path, plugin="pillow", mode="RGB")

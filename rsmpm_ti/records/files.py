@@ -12,18 +12,36 @@ import numpy as np
 
 @contextmanager
 def complete(path: str | os.PathLike):
-    """Yield a temporary name in the same folder; it becomes `path` only if the block succeeds.
+    """Yield a temporary name in the same folder; it becomes `path` only if the block succeeds, and is then on the disk.
 
-    So what is already there is never lost: a reader finds the old file or the new one, never half of one.
+    So what is already there is never lost: a reader finds the old file or the new one, never half of one, after a loss
+    of power too. The temporary file is new, so that no link leads elsewhere.
     """
     path = Path(path)
-    path.parent.mkdir(parents=True, exist_ok=True)
-    part = path.with_name(f".{path.stem}.part{path.suffix}")
+    part = part_of(path)
+    part.unlink(missing_ok=True)  # of a process that was killed
+    os.close(os.open(part, os.O_WRONLY | os.O_CREAT | os.O_EXCL, 0o666))
     try:
         yield part
+        _sync(part, os.O_RDWR)
         os.replace(part, path)
+        if hasattr(os, "O_DIRECTORY"):
+            _sync(path.parent, os.O_RDONLY | os.O_DIRECTORY)
     finally:
         part.unlink(missing_ok=True)
+
+
+def part_of(path: Path) -> Path:
+    """The name under which a file is written until it is complete."""
+    return path.with_name(f".{path.stem}.part{path.suffix}")
+
+
+def _sync(path: Path, flags: int) -> None:
+    descriptor = os.open(path, flags)
+    try:
+        os.fsync(descriptor)
+    finally:
+        os.close(descriptor)
 
 
 LARGEST = 1e300

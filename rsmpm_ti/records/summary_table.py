@@ -98,6 +98,10 @@ SUMMARY = Table(
         _key("dropped_momentum_kg_m_s", "kg m/s", "their momentum, mass scaling included"),
         _key("dropped_energy_J", "J", "their kinetic and elastic energy"),
         _key("stopped", "", "why the run ended before the end of its schedule; empty where it did not"),
+        _key(
+            "complete", "", "whether the run came to its end and every file of it is written; false or no "
+            "file while a run is under way",
+        ),
         _key("warnings", "", "list of sentences: what the numbers must not be taken for, and what went wrong beside"),
     ),
 )  # fmt: skip

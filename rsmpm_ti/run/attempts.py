@@ -4,6 +4,7 @@ from collections.abc import Callable
 from typing import Any
 
 from rsmpm_ti.errors import ObserverError, SceneError, reason
+from rsmpm_ti.output.folder import FolderGone
 
 KEPT = "what is complete is kept; go on with --resume"
 
@@ -18,7 +19,7 @@ class Attempts:
         """The result of work(*arguments), None where it failed; what: the name of such a failure, where it has none."""
         try:
             return work(*arguments)
-        except ObserverError as error:
+        except (ObserverError, FolderGone) as error:  # the one is of the user's own, of the other nothing is kept
             self._take(error)
         except SceneError as error:
             self._take(SceneError(f"{error}; {KEPT}"))

@@ -172,13 +172,15 @@ def _event_columns(sim) -> tuple[str, ...]:
     return sim.events.names
 
 
-def read(out: Path, scene: Scene, seeds, settings: Settings) -> dict[str, np.ndarray] | None:
+def read(
+    out: Path, scene: Scene, seeds, settings: Settings, passed_over: list[str] | None = None
+) -> dict[str, np.ndarray] | None:
     """The latest checkpoint in a run's folder that is sound; None where there is none at all.
 
-    seeds: `scene.particles()`. A stranger may have written it: nothing of it is used before all of it has been checked.
-    One that is damaged is passed over, with a RockWarning, for the one before. Raises SceneError where it belongs to
-    another scene, version or precision, naming the difference, and where there are only damaged ones. The end of the
-    run, its rows and its output may differ.
+    seeds: `scene.particles()`; passed_over: takes the names of damaged ones before it. A stranger may have written it:
+    nothing of it is used before all of it has been checked. One that is damaged is passed over, with a RockWarning, for
+    the one before. Raises SceneError where it belongs to another scene, version or precision, naming the difference,
+    and where there are only damaged ones. The end of the run, its rows and its output may differ.
     """
     damaged = ""
     for name in CHECKPOINTS:
@@ -191,6 +193,8 @@ def read(out: Path, scene: Scene, seeds, settings: Settings) -> dict[str, np.nda
         except Exception as error:  # libraries raise anything where what they are to read was made for it
             reason = "".join(c if c.isprintable() else " " for c in str(error) or type(error).__name__)
             damaged = f"{path} is damaged ({short(' '.join(reason.split()))})"
+            if passed_over is not None:
+                passed_over.append(name)
         if arrays is not None:
             if damaged:
                 warnings.warn(f"{damaged}; the run goes on from {name}", RockWarning, stacklevel=2)

@@ -5,11 +5,13 @@ again from the last checkpoint.
 """
 
 import time
+from pathlib import Path
 
 from rsmpm_ti.analysis.fracture import Fracture, crack_lines, measure_fracture
 from rsmpm_ti.analysis.summary import summarise
 from rsmpm_ti.errors import ObserverError, SceneError
 from rsmpm_ti.output.files import write_checkpoint, write_events, write_history, write_reactions
+from rsmpm_ti.output.folder import SUMMARY
 from rsmpm_ti.output.fracture_tables import write_fracture
 from rsmpm_ti.records.files import plain, write_json
 from rsmpm_ti.records.result import Result
@@ -24,14 +26,14 @@ def finish(run, stopped: str, failure: Exception | None) -> tuple[Result, SceneE
     stopped: why the run ended before its end; failure: by which exception.
     """
     end = End(run, stopped, failure)
-    if run.out is not None:
+    if run.folder is not None:
         end.write_tables()
     fracture = end.attempt(measure_fracture, *end.broken, what="what broke cannot be measured")
-    if run.out is not None:
+    if run.folder is not None:
         end.write_rest(fracture)
-    summary = end.attempt(end.numbers, fracture, what="the run cannot be summed up") or {}
-    if run.out is not None and summary:
-        end.attempt(write_json, run.out / "summary.json", summary)
+    summary = end.sum_up(fracture, run.over and failure is None and end.attempt.problem is None)
+    if run.folder is not None and summary.get("complete"):
+        run.folder.complete()
     view = end.view
     result = Result(
         history=view.history, summary=summary, events=view.events, fracture=fracture, snapshot=view.snapshot,
@@ -52,28 +54,39 @@ class End:
 
     def write_tables(self) -> None:
         """The run itself: its tables, a checkpoint and its numbers so far."""
-        out, view, attempt, writer = self.run.out, self.view, self.attempt, self.run.writer
-        attempt(write_history, out / "history.csv", view.history)
-        attempt(write_reactions, out / "reactions.csv", self.reactions)
-        attempt(write_events, out / "events.csv", view.events)
+        view, attempt, writer = self.view, self.attempt, self.run.writer
+        attempt(lambda: write_history(self._file("history.csv"), view.history))
+        if self.reactions is not None:
+            attempt(lambda: write_reactions(self._file("reactions.csv"), self.reactions))
+        attempt(lambda: write_events(self._file("events.csv"), view.events))
         # of a state that is sound: a user's observer and the writer say nothing against it, other failures do
         elsewhere = isinstance(self.failure, ObserverError) or (isinstance(self.failure, SceneError) and writer.problem)
         if self.run.followed and (self.failure is None or elsewhere):
             self._arrays = attempt(self.run.checkpoint_arrays)
         if self._arrays is not None:
             attempt(self._timed, writer.checkpoint, self._arrays)
-        numbers = attempt(self.numbers, None, what="the run cannot be summed up")
-        if numbers:
-            attempt(write_json, out / "summary.json", numbers)
+        self.sum_up(None, False)
 
     def write_rest(self, fracture: Fracture | None) -> None:
         """What is measured and painted, while the checkpoint is on its way to the disk."""
         if fracture is not None:
-            self.attempt(write_fracture, self.run.out, fracture, self.view.history)
+            self.attempt(write_fracture, self._file, fracture, self.view.history)
         if not self.run.writer.problem:
             self.attempt(self._paint, fracture, what="summary.png cannot be painted")
         if self.run.writer.problem and self._arrays is not None:  # it may have got no further than to be ordered
-            self.attempt(write_checkpoint, self.run.out, self._arrays)
+            self.attempt(self._keep, self._arrays)
+        if not self.run.writer.problem:
+            movie = f"{self.run.settings.name}.mp4"
+            self.attempt(self.run.folder.verify, [movie] if self.run.writer.warning else [])
+
+    def _file(self, name: str) -> Path:
+        """Where a file is to be written, inside of an attempt: a folder that is another now is not written into."""
+        return self.run.folder.file(name)
+
+    def _keep(self, arrays: dict) -> None:
+        """The checkpoint, by this process."""
+        self.run.folder.claim(*self.run.folder.checkpoint_names())
+        write_checkpoint(self.run.out, arrays)
 
     def _paint(self, fracture: Fracture | None) -> None:
         run, view, peak = self.run, self.view, self.run.largest.pattern
@@ -88,12 +101,19 @@ class End:
         finally:
             self.run.painting_s += time.perf_counter() - start
 
-    def numbers(self, fracture: Fracture | None) -> dict:
-        """The same in Python as in the file."""
-        return plain(numbers_of(self.run, self.view, fracture, self.speed, self.stopped))
+    def sum_up(self, fracture: Fracture | None, complete: bool) -> dict:
+        """The numbers of the run, the same in Python as in the file; none where they could not be had."""
+
+        def numbers() -> dict:
+            return plain(numbers_of(self.run, self.view, fracture, self.speed, self.stopped, complete))
+
+        found = self.attempt(numbers, what="the run cannot be summed up") or {}
+        if found and self.run.folder is not None:
+            self.attempt(lambda: write_json(self._file(SUMMARY), found))
+        return found
 
 
-def numbers_of(run, view, fracture: Fracture | None, speed: float, stopped: str) -> dict:
+def numbers_of(run, view, fracture: Fracture | None, speed: float, stopped: str, complete: bool) -> dict:
     """summary.json, whose keys `records/summary_table.py` declares. Without a Fracture those of what broke are missing:
     it has not been measured yet, or could not be."""
     writer = run.writer
@@ -113,6 +133,7 @@ def numbers_of(run, view, fracture: Fracture | None, speed: float, stopped: str)
         **(fracture.numbers() if fracture is not None else {}),
         **run.drive.dropped.numbers(),
         "stopped": stopped,
+        "complete": complete,
     }
     beside = [said for said in (writer.warning, writer.problem) if said] if writer is not None else []
     found = warnings_of(run.scene, numbers, view.history, view.events)

@@ -4,13 +4,12 @@ import os
 import time
 import warnings
 from collections.abc import Callable
-from pathlib import Path
 from typing import Any
 
 from rsmpm_ti.analysis.load_curve import FilteredLoad
 from rsmpm_ti.backend.start import start_taichi
 from rsmpm_ti.errors import BrokenApart, ObserverError, RockWarning, SceneError, UnstableRun, reason, refuse
-from rsmpm_ti.output.folder import prepare, write_record
+from rsmpm_ti.output.folder import RunFolder, named, prepare
 from rsmpm_ti.records.result import Progress, Result
 from rsmpm_ti.records.tables import Column
 from rsmpm_ti.run.attempts import KEPT
@@ -30,6 +29,7 @@ def simulate(
     arch: str = "cpu",
     threads: int | None = None,
     deterministic: bool = False,
+    overwrite: bool = False,
     resume: bool = False,
     checkpoint_every: float = CHECKPOINT_S,
     progress: Callable[[Progress], None] | None = None,
@@ -39,13 +39,14 @@ def simulate(
     """Run a scene to its end and write every file of a run into `out` (nothing is written when `out` is None).
 
     precision: 'f64' or 'f32'; arch: 'cpu' or 'cuda'; threads: CPU threads, all by default; deterministic: the same
-    bits whatever the number of threads, on one kind of machine; resume: go on from the checkpoint in `out`, from the
-    start where there is none, of a run that was stopped or done: its end, rows and output may be others now, nothing
-    else; checkpoint_every: wall time between checkpoints [s]; progress: called after each history row; columns: more
-    columns of the history (`Column`); observers: more observers (`Observer`), whose states a checkpoint keeps, to be
-    given again, in the same order, to a run that resumes. Ctrl-C, SIGTERM and SIGHUP stop after the step, and what
-    there is is still written; a second one does not wait for pictures. A specimen that bursts after its peak ends the
-    run, which is then a result.
+    bits whatever the number of threads, on one kind of machine; overwrite: replace the run that is in `out`, which is
+    kept as `<out>.previous` until this one is complete; resume: go on from the checkpoint in `out`, from the start
+    where there is none, of a run that was stopped or done: its end, rows and output may be others now, nothing else.
+    Without either a folder with a run in it is refused. checkpoint_every: wall time between checkpoints [s]; progress:
+    called after each history row; columns: more columns of the history (`Column`); observers: more observers
+    (`Observer`), whose states a checkpoint keeps, to be given again, in the same order, to a run that resumes. Ctrl-C,
+    SIGTERM and SIGHUP stop after the step, and what there is is still written; a second one does not wait for pictures.
+    A specimen that bursts after its peak ends the run, which is then a result.
     What is hard to believe in the scene comes as RockWarning, a sentence each, before it starts.
     Raises SceneError for input that cannot be run, before anything compiles, and when files cannot be written any
     more, and after writing everything up to there UnstableRun, or ObserverError where a column or observer raised.
@@ -55,8 +56,11 @@ def simulate(
         checkpoint_every=checkpoint_every, progress=progress, columns=_tuple(columns), observers=_tuple(observers),
     )  # fmt: skip
     settings.check(scene)
-    if resume and out is None:
-        raise refuse("resume", resume, "False without an output folder", "give the folder of the run as `out`")
+    for name, asked in (("overwrite", overwrite), ("resume", resume)):
+        if asked and out is None:
+            raise refuse(name, asked, "False without an output folder", "give the folder of the run as `out`")
+    if overwrite and resume:
+        raise refuse("overwrite", overwrite, "False with resume", "a run is replaced, or it goes on")
     seeds, kept = scene.particles(), None
     said = review(scene, seeds)
     if out is not None:
@@ -69,13 +73,29 @@ def simulate(
     with asked_to_stop(interrupt):  # from here on a signal does not find a run half begun
         if out is None:
             return Run(scene, seeds, None, settings, interrupt, said=said).go()
-        if resume:
-            from rsmpm_ti.run.checkpoint import check_end, read
+        folder = prepare(scene, out, settings.name, settings.precision, overwrite=overwrite, resume=resume)
+        try:
+            damaged: list[str] = []
+            if resume:
+                kept = _kept(folder, scene, seeds, settings, damaged)
+            run = Run(scene, seeds, folder, settings, interrupt, kept, said)
+            folder.remove(damaged)  # else the next checkpoint would set it aside, in the place of the good one
+            return run.go()
+        finally:
+            folder.release()
 
-            kept = read(Path(out), scene, seeds, settings)
-            if kept is not None:
-                check_end(kept, scene)
-        return Run(scene, seeds, prepare(scene, out, keep=kept is not None), settings, interrupt, kept, said).go()
+
+def _kept(folder: RunFolder, scene: Scene, seeds, settings: Settings, damaged: list[str]) -> dict | None:
+    """Arrays of the checkpoint from which to go on; None where there is none, and the run starts anew. damaged: takes
+    the names of those that were passed over."""
+    from rsmpm_ti.run.checkpoint import check_end, read
+
+    kept = read(folder.path, scene, seeds, settings, damaged)
+    if kept is None:
+        folder.start_anew()
+    else:
+        check_end(kept, scene)
+    return kept
 
 
 def _tuple(entries):
@@ -91,23 +111,43 @@ class Run:
     """
 
     def __init__(
-        self, scene: Scene, seeds, out: Path | None, settings: Settings, interrupt: Interrupt, kept=None, said=()
+        self,
+        scene: Scene,
+        seeds,
+        folder: RunFolder | None,
+        settings: Settings,
+        interrupt: Interrupt,
+        kept: dict | None = None,
+        said=(),
     ):
-        self.scene, self.out, self.settings, self.interrupt, self.said = scene, out, settings, interrupt, said
+        self.scene, self.folder, self.settings, self.interrupt = scene, folder, settings, interrupt
+        self.said, self.out = list(said), folder.path if folder is not None else None
         self.writer: Any = None  # an output.writer.Writer where files are written, imported only then: it needs Taichi
         self.begun = time.perf_counter()
-        if out is not None:  # first, since it gets ready while kernels compile here
+        if folder is not None:  # first, since it gets ready while kernels compile here
             from rsmpm_ti.output.pictures import commission
             from rsmpm_ti.output.writer import Writer
 
-            write_record(out, scene, settings.name, settings.precision)
             volume = float(sum(body.volume.sum() for body in seeds))
-            self.writer = Writer(commission(scene, settings.name, out, volume), lambda: self.interrupt.hurried)
+            self.writer = Writer(commission(scene, settings.name, folder.path, volume), folder, self._in_a_hurry)
         try:
             self._set_up(seeds, kept)
+            if folder is not None:
+                self._open(folder)
         except BaseException:
             self._abandon()
             raise
+
+    def _open(self, folder: RunFolder) -> None:
+        """The folder becomes this run's only now that nothing can refuse the run any more."""
+        self.writer.ready()
+        folder.begin(goes_on=self.resumed)
+        if self.resumed:
+            lost = [name for files in self.files for name in files.go_on(self.view())]
+            if lost:
+                self.said.append(
+                    f"{named(lost)} of the part before --resume were missing or damaged, and cannot be made again"
+                )
 
     def _set_up(self, seeds, kept) -> None:
         from rsmpm_ti.run.checkpoint import changed, restore, restore_observers
@@ -131,6 +171,9 @@ class Run:
             fraction = self.clock.fraction if another else None
             restore_observers(self.watches, progress["observers"], kept, fraction)
             self.wall_before = progress["wall_s"]
+
+    def _in_a_hurry(self) -> bool:
+        return self.interrupt.hurried
 
     def _observers(self) -> list:
         """In the order in which they look at a row: pictures, particle files, the user's own, the checkpoint."""
@@ -177,6 +220,8 @@ class Run:
             result, late = finish(self, stopped, failure)
             if not self.interrupt.hurried:  # else what was given up was asked for
                 failure = failure or late
+            if failure is not None:
+                self._abandon()
         except BaseException:
             self._abandon()
             raise

@@ -68,7 +68,7 @@ def tables(out: Path) -> dict[str, list[dict[str, str]]]:
 def test_summary_and_tables_say_the_same(tmp_path):
     events, last = broken_plate()
     fracture = measure_fracture(scene(), history(), events, last)
-    write_fracture(tmp_path, fracture, history())
+    write_fracture(tmp_path.joinpath, fracture, history())
     numbers, found = fracture.numbers(), tables(tmp_path)
     cracks = found["cracks"]
     assert numbers["cracks"] == len(cracks) == 2
@@ -90,7 +90,7 @@ def test_summary_and_tables_say_the_same(tmp_path):
 
 def test_columns_carry_their_units(tmp_path):
     events, last = broken_plate()
-    write_fracture(tmp_path, measure_fracture(scene(), history(), events, last), history())
+    write_fracture(tmp_path.joinpath, measure_fracture(scene(), history(), events, last), history())
     bare = {
         "crack", "fragment", "particles", "failures", "tension_failures", "shear_failures", "cumulative", "magnitude",
         "initiation_mode", "initiation_strain", "flaw_tip", "tortuosity",
@@ -117,7 +117,7 @@ def test_run_without_failures_writes_headers_and_one_fragment(tmp_path, dim):
     x = lattice((0.0, 0.0), (5e-3, 5e-3))
     x = x if dim == 2 else np.concatenate([np.column_stack([x, np.full(len(x), z)]) for z in (0.0, SPACING)])
     fracture = measure_fracture(scene(dim), history(), failures(np.zeros((0, dim))), snapshot(x))
-    write_fracture(tmp_path, fracture, history())
+    write_fracture(tmp_path.joinpath, fracture, history())
     found = tables(tmp_path)
     assert found["cracks"] == found["acoustic"] == [] and len(found["fragments"]) == 1
     numbers = fracture.numbers()
@@ -132,7 +132,7 @@ def test_solid_has_cracks_without_paths(tmp_path):
     x = np.concatenate([np.column_stack([flat, np.full(len(flat), z)]) for z in (0.0, SPACING)])
     events = failures(x)
     fracture = measure_fracture(scene(3), history(), events, snapshot(x, np.ones(len(x))))
-    write_fracture(tmp_path, fracture, history())
+    write_fracture(tmp_path.joinpath, fracture, history())
     (row,) = tables(tmp_path)["cracks"]
     assert row["length_m"] == row["aperture_mean_m"] == row["leaving_angle_deg"] == ""
     assert float(row["initiation_z_m"]) in (0.0, SPACING) and float(row["growth_m"]) > 3e-3
@@ -146,7 +146,7 @@ def test_without_platens_nothing_has_a_stress(tmp_path):
         unloaded[name] = np.nan
     for table in (unloaded, unloaded[:0]):
         fracture = measure_fracture(scene(), table, events, last)
-        write_fracture(tmp_path, fracture, table)
+        write_fracture(tmp_path.joinpath, fracture, table)
         found = tables(tmp_path)
         assert {row["initiation_stress_Pa"] for row in found["cracks"]} == {""}
         assert {row["nominal_stress_Pa"] for row in found["acoustic"]} == {""}
@@ -161,7 +161,7 @@ def test_unstable_run_is_measured_all_the_same(tmp_path):
     for sick in (x, u, v):
         sick[::7] = np.nan
     fracture = measure_fracture(scene(), history(), events, replace(last, x=x, displacement=u, velocity=v))
-    write_fracture(tmp_path, fracture, history())
+    write_fracture(tmp_path.joinpath, fracture, history())
     assert len(tables(tmp_path)["cracks"]) == 2
     write_json(tmp_path / "summary.json", fracture.numbers())
 

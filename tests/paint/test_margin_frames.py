@@ -143,6 +143,7 @@ def test_gallery_writes_margin_frames_only_when_asked(tmp_path, margin):
         rock=replace(scene.rock, after_failure=law),
     )
     x, _ = stripes(1)
+    (tmp_path / "frames").mkdir()
     gallery = Gallery(commission(scene, "cube", tmp_path, 5e-3))
     gallery.write(0, gallery.paint(0, snapshot_of(x), NO_ROWS))
     gallery.close(snapshot_of(x), NO_ROWS, [], np.zeros(0))

@@ -47,7 +47,7 @@ HANDS = {
     "says why": ("cat > /dev/null; echo no space >&2; exit 1", "status 1: no space"),
     "takes nothing": ("sleep 1000", "did not answer for 0.5 s"),
     "never finishes": ("cat > /dev/null; sleep 1000", "did not answer for 0.5 s"),
-    "makes nothing": ("cat > /dev/null; exit 0", "No such file"),
+    "makes nothing": ("cat > /dev/null; exit 0", "is empty"),
 }
 
 
@@ -59,6 +59,7 @@ def test_encoder_that_fails_is_named_in_one_line_and_leaves_nothing(tmp_path, mo
     program.chmod(0o755)
     monkeypatch.setenv("IMAGEIO_FFMPEG_EXE", str(program))
     monkeypatch.setattr("rsmpm_ti.paint.encoder.PATIENCE", 0.5)
+    (tmp_path / "out").mkdir()
     movie = Movie(tmp_path / "out" / "cube.mp4")
     frame = np.zeros((400, 400, 3), dtype=np.uint8)  # larger than a pipe holds
     with pytest.raises(RuntimeError, match=HANDS[kind][1]) as told:

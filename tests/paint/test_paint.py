@@ -215,7 +215,7 @@ def test_stress_frames_need_a_limit():
 
 def test_png_keeps_every_pixel_and_names_the_painter(tmp_path):
     image = np.random.default_rng(0).integers(0, 256, (20, 30, 3), dtype=np.uint8)
-    path = write_png(tmp_path / "new" / "frame.png", image, painter="raster")
+    path = write_png(tmp_path / "frame.png", image, painter="raster")
     with Image.open(path) as picture:
         assert picture.text == {"painter": "raster"}
         assert np.array_equal(np.array(picture), image)

@@ -75,7 +75,7 @@ def test_folder_that_cannot_be_written_is_refused_before_anything_starts(refused
     assert all(path.read_text() == "kept" for path in tmp_path.rglob("*") if path.is_file())
 
 
-@pytest.mark.parametrize("call", ["pathlib.Path.write_bytes", "rsmpm_ti.records.files.json.dump"])
+@pytest.mark.parametrize("call", ["tempfile.TemporaryFile", "os.write"])
 def test_disk_that_is_full_already_is_refused_before_anything_starts(refused, tmp_path, monkeypatch, call):
     monkeypatch.setattr(call, full)
     assert "No space left on device; make room" in refused("--out", str(tmp_path))
@@ -97,6 +97,24 @@ def test_file_that_cannot_be_finished_leaves_the_old_one_and_no_part(tmp_path, m
         with pytest.raises(OSError, match="No space left on device"):
             write()
     assert {path.name: path.read_bytes() for path in tmp_path.iterdir()} == before
+
+
+def test_file_is_on_the_disk_before_it_has_its_name_and_the_name_before_the_next_file(tmp_path, monkeypatch):
+    """So that after a loss of power a checkpoint has every frame before it."""
+    sync, replace, done = os.fsync, os.replace, []
+
+    def fsync(descriptor: int) -> None:
+        done.append(os.path.basename(os.readlink(f"/proc/self/fd/{descriptor}")))
+        sync(descriptor)
+
+    def rename(source, target) -> None:
+        done.append(f"-> {Path(target).name}")
+        replace(source, target)
+
+    monkeypatch.setattr("os.fsync", fsync)
+    monkeypatch.setattr("os.replace", rename)
+    write_png(tmp_path / "frame.png", np.zeros((4, 4, 3), dtype=np.uint8))
+    assert done == [".frame.part.png", "-> frame.png", tmp_path.name]
 
 
 def test_disk_that_fills_up_ends_the_writer_in_one_line_and_keeps_what_is_complete(tmp_path):

@@ -15,6 +15,7 @@ import numpy as np
 import pytest
 
 from rsmpm_ti.errors import RockWarning, SceneError
+from rsmpm_ti.output import manifest
 from rsmpm_ti.output.files import CHECKPOINTS, write_checkpoint
 from rsmpm_ti.records.history_table import HISTORY_COLUMNS
 from rsmpm_ti.records.result import Progress
@@ -50,8 +51,8 @@ RUN = [
 
 
 def files(folder: Path) -> dict[str, bytes]:
-    """Every file of a run that does not tell the time of day."""
-    timed = {"summary.json", *CHECKPOINTS}
+    """Every file of a run that tells neither the time of day nor which run it is of."""
+    timed = {"summary.json", manifest.FILE, *CHECKPOINTS}
     return {
         str(p.relative_to(folder)): p.read_bytes() for p in folder.rglob("*") if p.is_file() and p.name not in timed
     }

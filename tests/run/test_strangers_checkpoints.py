@@ -17,6 +17,7 @@ from hypothesis import strategies as st
 from hypothesis.extra import numpy as hypothesis_numpy
 
 from rsmpm_ti.errors import RockWarning, SceneError
+from rsmpm_ti.output import manifest
 from rsmpm_ti.output.files import CHECKPOINTS
 from rsmpm_ti.run import checkpoint
 from rsmpm_ti.run.kept import reading
@@ -161,9 +162,15 @@ def test_a_damaged_one_is_passed_over_in_one_line_by_the_command(sound, stopped,
     shutil.copytree(stopped, tmp_path, dirs_exist_ok=True)
     (tmp_path / CHECKPOINTS[0]).write_bytes(crafted.archive(sound | more_events(sound)))
     (tmp_path / CHECKPOINTS[1]).write_bytes(crafted.archive(sound))
+    with open(tmp_path / manifest.FILE, "a") as file:
+        file.write(f"{CHECKPOINTS[1]}\n")
     assert main([*RUN, "--out", str(tmp_path), "--resume"]) == 0
     said = [line for line in capsys.readouterr().err.splitlines() if "damaged" in line]
     assert len(said) == 1 and said[0].startswith("rsmpm_ti: warning: ") and said[0].endswith(f"from {CHECKPOINTS[1]}")
+    for name in CHECKPOINTS:  # neither is the damaged one: the good one before it was not overwritten by it
+        if (tmp_path / name).exists():
+            with np.load(tmp_path / name) as kept:
+                assert len(kept["event_time"]) <= kept["particle_key"].size * 2
 
 
 def test_what_is_no_file_of_the_folder_is_never_opened(sound, scene, seeds, tmp_path):

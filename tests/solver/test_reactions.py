@@ -102,5 +102,5 @@ def test_file_holds_the_rows_and_is_not_there_without_boundaries(tmp_path):
     assert tuple(header.split(",")) == result.reactions.dtype.names
     read = np.array([line.split(",") for line in lines], dtype=float)
     assert read == pytest.approx(np.array(result.reactions.tolist()), rel=1e-9)
-    free = simulate(block(steps=20, velocity=(1.0, 0.0)), out=tmp_path, threads=1)
+    free = simulate(block(steps=20, velocity=(1.0, 0.0)), out=tmp_path, threads=1, overwrite=True)
     assert free.reactions is None and not (tmp_path / "reactions.csv").exists()

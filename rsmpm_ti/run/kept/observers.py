@@ -31,7 +31,7 @@ def check_progress(progress, contents: Contents, settings: Settings) -> None:
     need(told == {name for name in contents.arrays if name.startswith(OBSERVERS)}, "observers have other arrays")
     largest, frames, files, *_, clock = parts
     _check_largest(largest, contents)
-    _check_frames(frames)
+    _check_frames(frames, contents.time)
     _check_files(files, contents.time)
     need(clock["own"] == {} and clock["arrays"] == [], "the last observer remembers something")
 
@@ -71,9 +71,11 @@ def _check_largest(part: dict, contents: Contents) -> None:
          "its pattern is far from the particles")  # fmt: skip
 
 
-def _check_frames(part: dict) -> None:
+def _check_frames(part: dict, time: float) -> None:
     own = part["own"]
-    need(set(own) == {"next", "used", "failed", "count"} and not part["arrays"], "its frames are not counted")
+    wanted = {"next", "used", "failed", "count", "time"}
+    need(set(own) == wanted and not part["arrays"], "its frames are not counted")
+    need(own["time"] == -1.0 or _number(own["time"], time * (1.0 + 1e-9)), "its latest frame is of another time")
     need(all(_count(own[name], MOST_LOOKS) for name in ("next", "used", "count")), "its frames are not counted")
     need(_number(own["failed"], 1e12), "failures at its latest frame are not counted")
 

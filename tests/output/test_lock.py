@@ -1,0 +1,72 @@
+"""One run at a time in a folder: the other is told who has it, and who was killed has it no more."""
+
+import os
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import pytest
+
+from rsmpm_ti.errors import SceneError
+from rsmpm_ti.output import lock
+
+ROOT = Path(__file__).resolve().parents[2]
+
+
+def refusal(folder: Path) -> str:
+    with pytest.raises(SceneError) as refused:
+        lock.Lock(folder)
+    return str(refused.value)
+
+
+def test_one_run_at_a_time_and_the_other_is_named(tmp_path):
+    first = lock.Lock(tmp_path)
+    assert f"process {os.getpid()} has since 20" in refusal(tmp_path)
+    first.release()
+    lock.Lock(tmp_path).release()
+    assert not list(tmp_path.iterdir())
+
+
+HOLD = """
+import subprocess, sys
+from pathlib import Path
+from rsmpm_ti.output.lock import Lock
+lock = Lock(Path(sys.argv[1]))
+subprocess.Popen(["sleep", sys.argv[2]], pass_fds=lock.passed)
+print("locked", flush=True)
+sys.stdin.read()
+"""
+
+
+def test_the_lock_of_a_run_that_was_killed_is_free_once_its_painter_has_ended(tmp_path):
+    command = [sys.executable, "-c", HOLD, str(tmp_path), "0.7"]
+    with subprocess.Popen(
+        command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, env=os.environ | {"PYTHONPATH": str(ROOT)}
+    ) as holder:
+        assert holder.stdout.readline() == b"locked\n"
+        began = time.monotonic()
+        assert f"process {holder.pid} has" in refusal(tmp_path)
+        holder.kill()
+    lock.Lock(tmp_path).release()
+    assert 0.3 < time.monotonic() - began < lock.GRACE_S
+
+
+def test_a_lock_whose_file_another_has_in_the_meantime_is_not_removed_on_release(tmp_path):
+    """The folder was renamed, and another run has begun in one of that name."""
+    (tmp_path / "out").mkdir()
+    first = lock.Lock(tmp_path / "out")
+    (tmp_path / "out").rename(tmp_path / "elsewhere")
+    (tmp_path / "out").mkdir()
+    second = lock.Lock(tmp_path / "out")
+    first.release()
+    assert f"process {os.getpid()} has" in refusal(tmp_path / "out")
+    second.release()
+
+
+def test_where_the_system_has_no_locks_the_file_is_the_lock(tmp_path, monkeypatch):
+    monkeypatch.setattr(lock, "fcntl", None)
+    first = lock.Lock(tmp_path)
+    assert "remove that file if the process is no more" in refusal(tmp_path)
+    first.release()
+    lock.Lock(tmp_path).release()
