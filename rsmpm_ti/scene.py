@@ -191,8 +191,9 @@ def run(scene: Scene, options: argparse.Namespace) -> int:
     name = scene_name(options.scene)
     out = Path(options.out) if options.out else Path("renders") / name
     console = Console(stderr=True)
+    console.quiet = not console.is_terminal  # else Rich 13.7 ends even a disabled bar by an empty line
     columns = (TextColumn("{task.description}"), BarColumn(), TimeElapsedColumn(), TimeRemainingColumn())
-    with Progress(*columns, console=console, transient=True, disable=not console.is_terminal) as bar:
+    with Progress(*columns, console=console, transient=True, disable=console.quiet) as bar:
         task = bar.add_task("compiling", total=1.0)
 
         def show(p):
