@@ -3,6 +3,8 @@
 import importlib
 import sys
 
+from rsmpm_ti.process import command
+
 COMMANDS = {
     "scene": ("rsmpm_ti.scene", "load a rock specimen, break it, and write pictures, curve, events and particle data"),
     "verify": ("rsmpm_ti.verify.__main__", "hold the solver against exact solutions, finite elements, published data"),
@@ -22,6 +24,7 @@ def listing() -> str:
     return "\n".join([head, "", *lines])
 
 
+@command
 def main(arguments: list[str] | None = None) -> int:
     """Exit status of the command; 0 for the list, 2 for a command that there is not."""
     arguments = sys.argv[1:] if arguments is None else arguments

@@ -8,6 +8,7 @@ from pathlib import Path
 
 from rsmpm_ti.cases.report import print_head, print_rows, write_table
 from rsmpm_ti.cases.running import cases_of, run_cases
+from rsmpm_ti.process import command
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -31,6 +32,7 @@ def parser(suite: Suite) -> argparse.ArgumentParser:
     return p
 
 
+@command
 def run_suite(suite: Suite, arguments: list[str] | None = None) -> int:
     """Exit status: 0 every row passes, 1 some do not or a case breaks, 2 the command is refused."""
     options, cases = parser(suite).parse_args(arguments), cases_of(suite.catalogue)

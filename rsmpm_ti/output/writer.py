@@ -7,24 +7,23 @@ it is, and a run can go on from it without a gap.
 
 import contextlib
 import json
-import os
 import pickle
 import subprocess
-import sys
 import tempfile
 from concurrent.futures import Future, ThreadPoolExecutor
-from pathlib import Path
 
 import numpy as np
 
-import rsmpm_ti
 from rsmpm_ti.errors import SceneError
 from rsmpm_ti.output.pictures import Commission
+from rsmpm_ti.process import python_command
 from rsmpm_ti.solver.readout import Readout
 
 WAITING_BYTES = 512 * 2**20
 """Orders that may wait for the child, which is behind while much fails: each holds a copy of the particles. One order
 may be larger."""
+
+CHILD = "from rsmpm_ti.output.writer_process import main; sys.exit(main())"
 
 REPORT = "rsmpm_ti writer: "
 """Begins the line by which the child says how it went; Taichi prints to the same pipe."""
@@ -36,14 +35,11 @@ class Writer:
     def __init__(self, wanted: Commission):
         """Starts the child, which gets ready while the caller goes on. Raises SceneError where it cannot be started."""
         self.out, self.warning, self.cpu_s = wanted.out, "", 0.0
-        package = str(Path(rsmpm_ti.__file__).resolve().parent.parent)
-        paths = os.pathsep.join(filter(None, (package, os.environ.get("PYTHONPATH"))))
         try:
             self._errors = tempfile.TemporaryFile()
             self._child = subprocess.Popen(
-                [sys.executable, "-m", "rsmpm_ti.output.writer_process"],
+                python_command(CHILD),
                 stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=self._errors,
-                env=os.environ | {"PYTHONPATH": paths},
                 start_new_session=True,  # Ctrl-C is for the solver, which then says what is still to be written
             )  # fmt: skip
         except OSError as error:

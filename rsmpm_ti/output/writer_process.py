@@ -1,4 +1,4 @@
-"""python -m rsmpm_ti.output.writer_process: paints and writes what a solver orders by standard input; see writer.py."""
+"""The process that paints and writes what a solver orders by standard input; see writer.py, which starts it."""
 
 import json
 import os
@@ -89,7 +89,3 @@ def main() -> int:
 def _file(error: Exception) -> str:
     name = getattr(error, "filename", None)
     return f" ({name})" if name else ""
-
-
-if __name__ == "__main__":
-    sys.exit(main())

@@ -7,7 +7,6 @@ import functools
 import json
 import signal
 import subprocess
-import sys
 import tempfile
 from pathlib import Path
 
@@ -15,6 +14,7 @@ import numpy as np
 import taichi as ti
 
 from rsmpm_ti.paint.palette import Palette, View, squares_in_view
+from rsmpm_ti.process import python_command
 
 PROBE = """
 import json, taichi as ti
@@ -33,8 +33,7 @@ def probe(timeout: float = 60.0) -> tuple[bool, str]:
     """Whether GGUI can draw here, and the reason in one line. Takes about 2 s, once per process; never raises."""
     try:
         with tempfile.TemporaryDirectory() as folder:  # a closing window writes imgui.ini where it runs
-            command = [sys.executable, "-c", PROBE]
-            child = subprocess.run(command, capture_output=True, text=True, timeout=timeout, cwd=folder)
+            child = subprocess.run(python_command(PROBE), capture_output=True, text=True, timeout=timeout, cwd=folder)
     except subprocess.TimeoutExpired:
         return False, f"GGUI's probe did not answer within {timeout:g} s"
     except OSError as error:

@@ -6,6 +6,7 @@ import sys
 from pathlib import Path
 
 from rsmpm_ti.cases.report import draw, print_head, print_rows, write_table
+from rsmpm_ti.process import command
 from rsmpm_ti.study.catalogue import STUDIES
 from rsmpm_ti.study.runs import all_kept, run_all
 
@@ -24,6 +25,7 @@ def parser() -> argparse.ArgumentParser:
     return p
 
 
+@command
 def main(arguments: list[str] | None = None) -> int:
     options = parser().parse_args(arguments)
     if options.list:
