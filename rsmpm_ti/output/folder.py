@@ -1,5 +1,6 @@
 """The folder of a run: made ready before anything is computed, and filled with tables when the run has ended."""
 
+import errno
 import os
 from collections.abc import Callable
 from pathlib import Path
@@ -41,7 +42,13 @@ def prepare(scene: Scene, out: str | os.PathLike, *, keep: bool = False) -> Path
 
 def _unwritable(out: Path, error: Exception) -> SceneError:
     reason = getattr(error, "strerror", None) or error
-    return SceneError(f"output folder {out} cannot be written: {reason}; make room, or give another with --out")
+    return SceneError(f"output folder {out} cannot be written: {reason}; {room(error)}give another with --out")
+
+
+def room(error: Exception) -> str:
+    """The remedy of a disk or a quota that is full, and of nothing else."""
+    full = [os.strerror(number) for number in (errno.ENOSPC, errno.EDQUOT)]
+    return "make room, or " if any(reason in str(error) for reason in full) else ""
 
 
 def forget(out: Path, pattern: str, *, keep: int) -> None:
@@ -70,13 +77,16 @@ def write_record(out: Path, scene: Scene, name: str, precision: str) -> None:
 
 def write_all(writes: list[Callable[[], None]]) -> None:
     """Do every write, also after one has failed, so that what can be kept is; then raise SceneError for the first."""
-    problem = None
+    problem, remedy = None, ""
     for write in writes:
         try:
             write()
         except SceneError as error:
-            problem = problem or error
+            remedy, problem = remedy or room(error), problem or error
         except OSError as error:
+            remedy = remedy or room(error)
             problem = problem or SceneError(f"{error.filename or 'a file'} cannot be written: {error.strerror}")
     if problem is not None:
-        raise SceneError(f"{problem}; what is complete is kept: make room and go on with --resume") from None
+        raise SceneError(
+            f"{problem}; what is complete is kept: {remedy.replace(', or', ' and')}go on with --resume"
+        ) from None

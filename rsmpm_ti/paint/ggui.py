@@ -5,6 +5,7 @@ Whether it works is asked of a child process (`probe`), because some of the ways
 
 import functools
 import json
+import os
 import signal
 import subprocess
 import tempfile
@@ -33,7 +34,10 @@ def probe(timeout: float = 60.0) -> tuple[bool, str]:
     """Whether GGUI can draw here, and the reason in one line. Takes about 2 s, once per process; never raises."""
     try:
         with tempfile.TemporaryDirectory() as folder:  # a closing window writes imgui.ini where it runs
-            child = subprocess.run(python_command(PROBE), capture_output=True, text=True, timeout=timeout, cwd=folder)
+            quiet = os.environ | {"TI_SKIP_VERSION_CHECK": "ON"}  # else it tells Taichi's makers of every day's first
+            child = subprocess.run(
+                python_command(PROBE), env=quiet, capture_output=True, text=True, timeout=timeout, cwd=folder
+            )
     except subprocess.TimeoutExpired:
         return False, f"GGUI's probe did not answer within {timeout:g} s"
     except OSError as error:

@@ -13,6 +13,7 @@ from rsmpm_ti.errors import BrokenApart, ObserverError, RockWarning, SceneError,
 from rsmpm_ti.output.folder import prepare, write_record
 from rsmpm_ti.records.result import Progress, Result
 from rsmpm_ti.records.tables import Column
+from rsmpm_ti.run.alone import alone
 from rsmpm_ti.run.finish import finish
 from rsmpm_ti.run.interrupt import Interrupt, asked_to_stop
 from rsmpm_ti.run.settings import CHECKPOINT_S, Settings
@@ -20,6 +21,7 @@ from rsmpm_ti.spec.review.sentences import review
 from rsmpm_ti.spec.scene import Scene
 
 
+@alone
 def simulate(
     scene: Scene,
     *,
@@ -58,7 +60,7 @@ def simulate(
     seeds, kept = scene.particles(), None
     said = review(scene, seeds)
     for sentence in said:
-        warnings.warn(sentence, RockWarning, stacklevel=2)
+        warnings.warn(sentence, RockWarning, stacklevel=3)  # above the decorator
     if out is None:
         return Run(scene, seeds, None, settings, said=said).go()
     if resume:

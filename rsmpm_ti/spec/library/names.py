@@ -13,7 +13,10 @@ ALLOWED = f"a file name of 1 to {MAX_LETTERS} letters, digits, '_', '-' and '.',
 def run_name(scene: str) -> str:
     """The name under which the run of a scene is filed, given its name or path; of a recorded scene.json the name of
     the folder that it lies in."""
-    path = Path(os.path.abspath(scene))
+    try:
+        path = Path(os.path.abspath(scene))
+    except OSError:  # the current folder has been deleted
+        path = Path(scene)
     text = path.parent.name if path.name == "scene.json" else path.name
     return made_name(text.removesuffix(".py").removesuffix(".json"))
 
