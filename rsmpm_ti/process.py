@@ -73,8 +73,10 @@ def command(main: Callable[Arguments, int]) -> Callable[Arguments, int]:
         with _as_stdout(output):
             try:
                 status = main(*arguments, **keywords)
-            except SystemExit as ended:  # --help, or an option that there is not
-                status = ended.code if isinstance(ended.code, int) else 0
+            except SystemExit:  # --help, or an option that there is not
+                if output.complete():
+                    raise
+                return 2
         return status if output.complete() else 2
 
     return run
