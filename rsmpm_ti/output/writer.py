@@ -11,6 +11,7 @@ import pickle
 import subprocess
 import tempfile
 from concurrent.futures import Future, ThreadPoolExecutor
+from dataclasses import replace
 
 import numpy as np
 
@@ -36,10 +37,12 @@ class Writer:
         """Starts the child, which gets ready while the caller goes on. Raises SceneError where it cannot be started."""
         self.out, self.warning, self.cpu_s = wanted.out, "", 0.0
         try:
+            wanted = replace(wanted, out=wanted.out.absolute())
             self._errors = tempfile.TemporaryFile()
             self._child = subprocess.Popen(
                 python_command(CHILD),
                 stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=self._errors,
+                cwd=wanted.out,  # libraries read settings in the current folder, which may be gone besides
                 start_new_session=True,  # Ctrl-C is for the solver, which then says what is still to be written
             )  # fmt: skip
         except OSError as error:
