@@ -75,6 +75,15 @@ def test_a_python_that_is_started_sees_what_its_parent_sees(tmp_path, flags):
     assert child == parent and child[-1].startswith(str(ROOT))
 
 
+def test_nobody_starts_a_python_in_another_way():
+    for path in sorted((ROOT / "rsmpm_ti").rglob("*.py")):
+        text = path.read_text(encoding="utf-8")
+        assert "[sys.executable" not in text or path.name == "process.py", path
+        assert 'get_context("spawn")' not in text or "no_current_folder()" in text or "get_context('spawn')" in text, (
+            path
+        )
+
+
 def shell(line: str, cwd: Path = ROOT, **variables: str) -> subprocess.CompletedProcess:
     environment = os.environ | {"PYTHONPATH": str(ROOT)} | variables
     line = line.replace("PYTHON", sys.executable)

@@ -34,7 +34,9 @@ def probe(timeout: float = 60.0) -> tuple[bool, str]:
     """Whether GGUI can draw here, and the reason in one line. Takes about 2 s, once per process; never raises."""
     try:
         with tempfile.TemporaryDirectory() as folder:  # a closing window writes imgui.ini where it runs
-            quiet = os.environ | {"TI_SKIP_VERSION_CHECK": "ON"}  # else it tells Taichi's makers of every day's first
+            # it follows no variables of Taichi's either, and tells its makers nothing
+            quiet = {name: value for name, value in os.environ.items() if not name.startswith("TI_")}
+            quiet |= {"TI_SKIP_VERSION_CHECK": "ON"}
             child = subprocess.run(
                 python_command(PROBE), env=quiet, capture_output=True, text=True, timeout=timeout, cwd=folder
             )
