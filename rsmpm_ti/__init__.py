@@ -5,8 +5,10 @@ public name is imported from here, `from rsmpm_ti import Scene, Body, Box, MPa`;
 loaded on first use, so `import rsmpm_ti` alone pulls in neither Taichi nor a painter.
 """
 
+import locale
 import os
 import sys
+import warnings
 from importlib.util import find_spec
 
 __version__ = "0.1.0"
@@ -54,6 +56,15 @@ def _say_what_taichi_cannot_read() -> None:
     for name in SWITCHES:
         if os.environ.get(name, "") not in ("", "0", "1"):
             _end(f"rsmpm_ti: {name} = {os.environ[name]!r} is refused: it must be 0 or 1")
+    # what it does that will be no more is not ours to mend, and ends it where warnings are errors
+    warnings.filterwarnings("ignore", category=DeprecationWarning, module=r".*\btaichi\b")
+    try:
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")
+            locale.getdefaultlocale()
+    except ValueError:  # LC_CTYPE=UTF-8, as some terminals hand on to another machine
+        given = next(name for name in ("LC_ALL", "LC_CTYPE", "LANG", "LANGUAGE") if os.environ.get(name))
+        _end(f"rsmpm_ti: {given} = {os.environ[given]!r} is refused: it must be a locale of this system, as C.UTF-8 is")
 
 
 _say_what_is_missing()

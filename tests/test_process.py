@@ -30,7 +30,8 @@ def planted(tmp_path, monkeypatch):
     return tmp_path
 
 
-def test_the_process_that_paints_runs_nothing_of_the_current_folder(planted):
+def test_the_process_that_paints_runs_nothing_of_the_current_folder(planted, monkeypatch):
+    monkeypatch.setenv("MPLBACKEND", "nonsense")  # nor follows what is meant for windows
     (planted / "out").mkdir()
     writer = started(planted / "out")
     shutil.rmtree(planted / "planted")  # and does not mind that it is gone

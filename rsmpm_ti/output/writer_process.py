@@ -67,6 +67,7 @@ def main() -> int:
     """Status 0 when closed or when the solver is gone, 1 with a report of the problem otherwise."""
     if hasattr(os, "nice"):
         os.nice(NICENESS)
+    os.environ["MPLBACKEND"] = "agg"  # matplotlib does not bear the name of one that is not there
     desk, problem, order = Desk(), "", ("",)
     while order[0] != "close" and not problem:
         try:

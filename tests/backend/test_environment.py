@@ -42,7 +42,13 @@ print(json.dumps({
 }))
 """
 
-VARIABLES = {"TI_ARCH": "nonsense", "TI_DEFAULT_IP": "64", "TI_DEBUG": "yes", "TI_OFFLINE_CACHE": "yes"}
+VARIABLES = {
+    "PYTHONWARNINGS": "error",
+    "TI_ARCH": "nonsense",
+    "TI_DEFAULT_IP": "64",
+    "TI_DEBUG": "yes",
+    "TI_OFFLINE_CACHE": "yes",
+}
 
 
 @pytest.mark.parametrize("home", ["a home", "no home"])
@@ -65,7 +71,12 @@ def test_taichi_follows_arguments_alone_and_tells_nobody(tmp_path, home):
 
 
 @pytest.mark.parametrize(
-    "name, words", [("TI_LOG_LEVEL", "must be trace, debug, info"), ("TI_ENABLE_PYBUF", "must be 0 or 1")]
+    "name, words",
+    [
+        ("TI_LOG_LEVEL", "must be trace, debug, info"),
+        ("TI_ENABLE_PYBUF", "must be 0 or 1"),
+        ("LC_ALL", "must be a locale of this system"),
+    ],
 )
 def test_a_variable_that_taichi_cannot_read_on_import_is_refused_in_a_line(name, words):
     command = [sys.executable, "-m", "rsmpm_ti.scene", "--list"]
