@@ -19,16 +19,18 @@ def unknown(user):
 
 
 pwd.getpwuid = unknown
+from rsmpm_ti.backend.start import start_taichi
+
+import taichi as ti  # NumPy 2.5 is not imported from a folder that is gone
+
 gone = os.path.join(sys.argv[1], "gone")
 os.mkdir(gone)
 os.chdir(gone)
 os.rmdir(gone)
-from rsmpm_ti.backend.start import start_taichi
 
 with warnings.catch_warnings(record=True) as said:
     warnings.simplefilter("always")
     start_taichi("f64", "cpu", 1)
-import taichi as ti
 
 runtime, config = ti.lang.impl.get_runtime(), ti.lang.impl.current_cfg()
 field = ti.field(int, 4)
