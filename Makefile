@@ -8,7 +8,7 @@ PYTHONS = $(if $(PYTHON),$(PYTHON),python3.13 python3.12 python3.11 python3.10 p
 STAMP   = $(VENV)/.installed$(if $(PYTHON),-$(notdir $(PYTHON)))
 SUITED  = import sys; sys.exit(not (3, 10) <= sys.version_info[:2] <= (3, 13))
 
-.PHONY: help cube disc intact test lint validation verify hardcases study clean
+.PHONY: help cube disc intact test lint versions oldest newest validation verify hardcases study clean
 
 help:
 	@echo 'make cube        slit cube in uniaxial compression    -> renders/cube/'
@@ -17,6 +17,7 @@ help:
 	@echo '                 (each replaces its run of before; into ARGS="--out DIR" only with --overwrite)'
 	@echo 'make test        the test suite'
 	@echo 'make lint        ruff check, ruff format --check, mypy'
+	@echo 'make versions    the tests that touch other packages, with the lowest and the highest versions that are allowed'
 	@echo 'make validation  the longer tier of tests'
 	@echo 'make verify      the solver against exact solutions and finite elements; ARGS=--full for all of it'
 	@echo 'make hardcases   hard cases and their verdicts; ARGS=--full for all of it'
@@ -49,6 +50,24 @@ lint: $(STAMP)
 	$(RUN) -m ruff check .
 	$(RUN) -m ruff format --check .
 	$(RUN) -m mypy
+
+# Each in an environment of its own, built anew: lower bounds of pyproject.toml as they stand, on the oldest Python that is
+# there, and the newest versions within its upper bounds, on the newest Python.
+OTHERS = tests/test_cli.py tests/test_door.py tests/analysis tests/output tests/paint tests/spec tests/run/test_run.py
+BOUNDS = sed -n 's/^ *"\([A-Za-z0-9_-]*\)>=\([0-9.]*\),.*/\1==\2/p' pyproject.toml
+
+versions: oldest newest
+
+oldest: TRIED = python3.10 python3.11 python3.12
+newest: TRIED = python3.13 python3.12 python3.11 python3.10
+
+oldest newest:
+	@rm -rf build/$@ && mkdir -p build
+	@if test $@ = oldest; then $(BOUNDS); fi > build/$@.txt
+	@for python in $(TRIED); do "$$python" -m venv --clear build/$@ >/dev/null 2>&1 && break; done
+	build/$@/bin/python -m pip install --quiet --disable-pip-version-check -c build/$@.txt -e '.[test]'
+	@build/$@/bin/python --version; build/$@/bin/python -m pip list --format freeze
+	build/$@/bin/python -m pytest -n 2 --dist worksteal $(OTHERS) $(ARGS)
 
 # Candidates are executed, not just looked up: a pyenv shim may exist and fail. Debian's python3 comes without
 # ensurepip, and its `-m venv` would leave a .venv without pip behind.

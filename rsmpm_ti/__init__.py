@@ -5,8 +5,10 @@ public name is imported from here, `from rsmpm_ti import Scene, Body, Box, MPa`;
 loaded on first use, so `import rsmpm_ti` alone pulls in neither Taichi nor a painter.
 """
 
+import locale
 import os
 import sys
+import warnings
 from importlib.util import find_spec
 
 __version__ = "0.1.0"
@@ -25,25 +27,53 @@ def _is_command() -> bool:
     return module[:1] != [] and module[0].split(".")[0] == "rsmpm_ti" or program == ["rsmpm_ti"]
 
 
+def _end(line: str) -> None:
+    """Raise ImportError, or end a command by one line."""
+    if _is_command():
+        print(line, file=sys.stderr)
+        raise SystemExit(2)
+    raise ImportError(line)
+
+
 def _say_what_is_missing() -> None:
-    """Raise ImportError, or end a command by one line, where a package that everything needs is not installed."""
+    """Where a package that everything needs is not installed."""
     missing = [name for name in NEEDED if find_spec(name) is None]
     if missing:
-        line = (
+        _end(
             f"rsmpm_ti needs {', '.join(missing)}, which {sys.executable} does not have: use .venv/bin/python, which "
             f"`make` builds in a checkout, or `pip install rsmpm_ti`"
         )
-        if _is_command():
-            print(line, file=sys.stderr)
-            raise SystemExit(2)
-        raise ImportError(line)
+
+
+LEVELS = "trace debug info warn error critical off".split()
+SWITCHES = "TI_ENABLE_PYBUF TI_ENABLE_TORCH TI_ENABLE_PADDLE".split()
+
+
+def _say_what_taichi_cannot_read() -> None:
+    """Variables of the environment that it reads when it is imported, and does not bear otherwise."""
+    if os.environ.get("TI_LOG_LEVEL", "off") not in ("", *LEVELS):
+        _end(f"rsmpm_ti: TI_LOG_LEVEL = {os.environ['TI_LOG_LEVEL']!r} is refused: it must be {', '.join(LEVELS)}")
+    for name in SWITCHES:
+        if os.environ.get(name, "") not in ("", "0", "1"):
+            _end(f"rsmpm_ti: {name} = {os.environ[name]!r} is refused: it must be 0 or 1")
+    # what it does that will be no more is not ours to mend, and ends it where warnings are errors
+    warnings.filterwarnings("ignore", category=DeprecationWarning, module=r".*\btaichi\b")
+    try:
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")
+            locale.getdefaultlocale()
+    except ValueError:  # LC_CTYPE=UTF-8, as some terminals hand on to another machine
+        given = next(name for name in ("LC_ALL", "LC_CTYPE", "LANG", "LANGUAGE") if os.environ.get(name))
+        _end(f"rsmpm_ti: {given} = {os.environ[given]!r} is refused: it must be a locale of this system, as C.UTF-8 is")
 
 
 _say_what_is_missing()
+_say_what_taichi_cannot_read()
 # Taichi greets on standard output when it is imported; a command's output should hold only its own words
 os.environ.setdefault("ENABLE_TAICHI_HEADER_PRINT", "0")
 # and without a home, as under cron or a service manager, it ends the process by a signal
-os.environ.setdefault("HOME", os.path.expanduser("~"))
+_home = os.path.expanduser("~")
+os.environ.setdefault("HOME", os.devnull if _home == "~" else _home)  # "~": of a user whom the system does not know
 
 import lazy_loader  # noqa: E402  (known to be there only now)
 

@@ -3,6 +3,8 @@
 import importlib
 import sys
 
+from rsmpm_ti.process import command, tell
+
 COMMANDS = {
     "scene": ("rsmpm_ti.scene", "load a rock specimen, break it, and write pictures, curve, events and particle data"),
     "verify": ("rsmpm_ti.verify.__main__", "hold the solver against exact solutions, finite elements, published data"),
@@ -22,6 +24,7 @@ def listing() -> str:
     return "\n".join([head, "", *lines])
 
 
+@command
 def main(arguments: list[str] | None = None) -> int:
     """Exit status of the command; 0 for the list, 2 for a command that there is not."""
     arguments = sys.argv[1:] if arguments is None else arguments
@@ -35,7 +38,7 @@ def main(arguments: list[str] | None = None) -> int:
         return 0
     if arguments[0] not in COMMANDS:
         known = f"there are {', '.join(COMMANDS)}; a scene is run by `rsmpm_ti scene NAME`"
-        print(f"rsmpm_ti: there is no command {arguments[0]!r}; {known}", file=sys.stderr)
+        tell(f"rsmpm_ti: there is no command {arguments[0]!r}; {known}")
         return 2
     return importlib.import_module(COMMANDS[arguments[0]][0]).main(arguments[1:])
 

@@ -114,7 +114,8 @@ def _json_schema_with_type(kind: type, schema, handler) -> dict:
     described = handler(schema)
     inner = handler.resolve_ref_schema(described)
     inner["properties"] = {"type": {"const": kind.__name__}, **inner.get("properties", {})}
-    inner["required"] = ["type", *inner.get("required", [])]
+    needed = [name for name in inner.get("required", []) if name != "type"]  # pydantic 2.8 asks twice for one class
+    inner["required"] = ["type", *needed]
     for name, field in inner["properties"].items():
         if dataclasses.is_dataclass(getattr(kind, name, None)):  # a default, which pydantic writes without its class
             field["default"]["type"] = type(getattr(kind, name)).__name__

@@ -1,5 +1,8 @@
 """What can go wrong: a scene that cannot be run, one that is hard to believe, an unstable run, a failed observer."""
 
+import errno
+import os
+
 
 class SceneError(ValueError):
     """A scene, option or file is refused before anything compiles (exit status 2).
@@ -70,3 +73,17 @@ def reason(error: BaseException) -> str:
     if isinstance(error, OSError) and error.strerror:
         return error.strerror
     return short(f"{type(error).__name__}: {error}")
+
+
+FULL = tuple(os.strerror(getattr(errno, name)) for name in ("ENOSPC", "EDQUOT") if hasattr(errno, name))
+"""What a disk or a quota that is full says."""
+
+
+def room(said: str, link: str = ", or ") -> str:
+    """The remedy of what went wrong where a disk is full, and "" for anything else."""
+    return f"make room{link}" if any(full in said for full in FULL) else ""
+
+
+def still_kept(said: str) -> str:
+    """What to do after a failure of a run that can go on."""
+    return f"what is complete is kept; {room(said, ' and ')}go on with --resume"

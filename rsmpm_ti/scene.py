@@ -10,7 +10,11 @@ from dataclasses import replace
 from pathlib import Path
 
 from rsmpm_ti.errors import RockWarning, SceneError, UnstableRun, reason, shown
-from rsmpm_ti.spec.loader import about, available, find, load_scene, scene_name
+from rsmpm_ti.process import command, tell
+from rsmpm_ti.spec.library.glance import glance
+from rsmpm_ti.spec.library.names import run_name
+from rsmpm_ti.spec.library.places import available, find, ships
+from rsmpm_ti.spec.loader import about, load_scene
 from rsmpm_ti.spec.mass_scaling import estimate
 from rsmpm_ti.spec.review.memory import memory
 from rsmpm_ti.spec.review.placement import area_errors
@@ -92,8 +96,8 @@ def build(options: argparse.Namespace) -> Scene:
     return scene.elastic() if options.elastic else scene
 
 
-def describe(scene: Scene, threads: int | None = None) -> str:
-    """What would be run, as `--check` prints it; threads: all by default."""
+def describe(scene: Scene, threads: int | None = None, file: Path | None = None) -> str:
+    """What would be run, as `--check` prints it; threads: all by default; file: which the scene is from."""
     from rsmpm_ti.run.forecast import disk, size, solving_time
 
     seeds = scene.particles()
@@ -104,6 +108,7 @@ def describe(scene: Scene, threads: int | None = None) -> str:
     cores = threads or os.cpu_count() or 1
     seconds = solving_time(scene, count, cores)
     rows = (
+        *([] if file is None else [("file", f"{file}")]),
         ("scene", scene.title),
         ("particles", f"{count}"),
         *area(scene, seeds),
@@ -142,11 +147,14 @@ def expectation(scene: Scene) -> tuple[tuple[str, str], ...]:
 
 
 def list_scenes() -> str:
-    """Two lines for each scene: what it is, and its keywords with defaults, as --set takes them."""
+    """Two lines for each scene: what it is, and its keywords with defaults, as --set takes them.
+
+    Files of ./scenes are read and not run: whoever asks for a list has not asked for that.
+    """
     lines = []
     for name, path in available().items():
         try:
-            what, keywords = about(path)
+            what, keywords = about(path) if ships(path) else glance(path)
         except SceneError as error:  # one bad file does not hide the others
             what, keywords = "cannot be listed: " + " ".join(str(error).split()), {}
         lines.append(f"{name:<15} {what}")
@@ -155,6 +163,7 @@ def list_scenes() -> str:
     return "\n".join(lines)
 
 
+@command
 def main(arguments: list[str] | None = None) -> int:
     options = parser().parse_args(arguments)
     try:
@@ -166,43 +175,42 @@ def main(arguments: list[str] | None = None) -> int:
             return 0
         if not options.scene:
             raise SceneError(f"name a scene: {', '.join(available())} (or use --list)")
-        find(options.scene)
-        scene = build(options)
-        if options.check:
+        with warnings.catch_warnings():
+            warnings.simplefilter("always", RockWarning)
+            warnings.showwarning = lambda message, *_, **__: say(message)
+            scene = build(options)
+            if not options.check:
+                return run(scene, options)
+            print(describe(scene, options.threads, find(options.scene)))
             from rsmpm_ti.run.forecast import disk_said
 
-            print(describe(scene, options.threads))
             seeds = scene.particles()
             count = sum(len(body.x) for body in seeds)
             for sentence in [*review(scene, seeds), *disk_said(scene, count, folder(options))]:
                 say(sentence)
             return 0
-        with warnings.catch_warnings():
-            warnings.simplefilter("always", RockWarning)
-            warnings.showwarning = lambda message, *_, **__: say(message)
-            return run(scene, options)
     except SceneError as error:
-        print(f"rsmpm_ti: {' '.join(str(error).split())}", file=sys.stderr)
+        tell(f"rsmpm_ti: {' '.join(str(error).split())}")
         return 2
     except UnstableRun as error:
-        print(f"rsmpm_ti: the run became unstable: {error}", file=sys.stderr)
+        tell(f"rsmpm_ti: the run became unstable: {error}")
         return 3
     except (MemoryError, OSError) as error:  # no memory, descriptors or disk to begin with
-        print(f"rsmpm_ti: cannot be run: {reason(error)}", file=sys.stderr)
+        tell(f"rsmpm_ti: cannot be run: {reason(error)}")
         return 2
     except KeyboardInterrupt:
-        print("rsmpm_ti: stopped by Ctrl-C; what is complete is kept", file=sys.stderr)
+        tell("rsmpm_ti: stopped by Ctrl-C; what is complete is kept")
         return 128 + signal.SIGINT
 
 
 def folder(options: argparse.Namespace) -> Path:
     """Where a run writes."""
-    return Path(options.out) if options.out else Path("renders") / scene_name(options.scene)
+    return Path(options.out) if options.out else Path("renders") / run_name(options.scene)
 
 
 def say(sentence: object) -> None:
     """A warning, on stderr."""
-    print(f"rsmpm_ti: warning: {' '.join(str(sentence).split())}", file=sys.stderr)
+    tell(f"rsmpm_ti: warning: {' '.join(str(sentence).split())}")
 
 
 def run(scene: Scene, options: argparse.Namespace) -> int:
@@ -212,10 +220,11 @@ def run(scene: Scene, options: argparse.Namespace) -> int:
 
     from rsmpm_ti.run.run import simulate
 
-    name, out = scene_name(options.scene), folder(options)
+    name, out = run_name(options.scene), folder(options)
     console = Console(stderr=True)
+    console.quiet = not console.is_terminal  # else Rich 13.7 ends even a disabled bar by an empty line
     columns = (TextColumn("{task.description}"), BarColumn(), TimeElapsedColumn(), TimeRemainingColumn())
-    with Progress(*columns, console=console, transient=True, disable=not console.is_terminal) as bar:
+    with Progress(*columns, console=console, transient=True, disable=console.quiet) as bar:
         task = bar.add_task("compiling", total=1.0)
 
         def show(p):

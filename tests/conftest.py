@@ -3,8 +3,7 @@
 import pytest
 import taichi as ti
 
-from rsmpm_ti.backend.field_memory import use_field_memory
-from rsmpm_ti.backend.taichi_patches import hasten_compiling
+from rsmpm_ti.backend.start import start_taichi
 from rsmpm_ti.fields import state
 from rsmpm_ti.fields.parallel import Chunks, Single, Slabs
 
@@ -26,12 +25,7 @@ def pytest_collection_modifyitems(items) -> None:
 
 
 def start(real, threads: int = 2) -> None:
-    hasten_compiling()
-    use_field_memory()
-    ti.init(
-        arch=ti.cpu, default_fp=real, cpu_max_num_threads=threads, offline_cache=True, log_level=ti.ERROR,
-        cfg_optimization=False,  # as in a run
-    )  # fmt: skip
+    start_taichi("f64" if real == ti.f64 else "f32", "cpu", threads)
 
 
 @pytest.fixture(scope="module")

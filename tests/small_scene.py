@@ -12,7 +12,7 @@ from rsmpm_ti.rock.elasticity import Hooke
 from rsmpm_ti.rock.rock import Rock
 from rsmpm_ti.spec.boundaries import Platen
 from rsmpm_ti.spec.domain import Domain
-from rsmpm_ti.spec.loader import available
+from rsmpm_ti.spec.library.places import available
 from rsmpm_ti.spec.loading_start import Affine
 from rsmpm_ti.spec.regions import Box
 from rsmpm_ti.spec.scene import Body, Loading, Scene, Schedule

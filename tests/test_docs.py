@@ -16,7 +16,7 @@ from rsmpm_ti.__main__ import COMMANDS
 from rsmpm_ti.cases.running import run_case
 from rsmpm_ti.errors import SceneError
 from rsmpm_ti.scene import build, parser
-from rsmpm_ti.spec.loader import available
+from rsmpm_ti.spec.library.places import available
 
 ROOT = Path(__file__).resolve().parent.parent
 PAGES = [ROOT / "README.md", ROOT / "CONTRIBUTING.md", *sorted((ROOT / "docs").glob("*.md"))]

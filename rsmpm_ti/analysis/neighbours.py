@@ -25,6 +25,7 @@ def neighbour_graph(x: np.ndarray, reach: float) -> csr_array:
     a, b = pairs_within(x, reach)
     # a particle may fail twice in one position, and an edge of length 0 would be no edge
     length = np.maximum(np.linalg.norm(x[a] - x[b], axis=1), 1e-9 * reach)
+    a, b = a.astype(np.int32), b.astype(np.int32)  # dijkstra of SciPy 1.13 takes no other indices
     return csr_array(coo_array((length, (a, b)), shape=(len(x), len(x))))
 
 

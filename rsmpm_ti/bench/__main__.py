@@ -6,6 +6,7 @@ import sys
 from pathlib import Path
 
 from rsmpm_ti.bench.sweep import CELLS, SHAPES
+from rsmpm_ti.process import command
 
 
 def parser() -> argparse.ArgumentParser:
@@ -45,6 +46,7 @@ def parser() -> argparse.ArgumentParser:
     return p
 
 
+@command
 def main(arguments: list[str] | None = None) -> int:
     options = parser().parse_args(arguments)
     print(_measure(options))

@@ -9,6 +9,7 @@ from pathlib import Path
 from rsmpm_ti.bench.measures import Measure, measure
 from rsmpm_ti.bench.pareto import Entry, pareto, recommendations
 from rsmpm_ti.bench.sweep import CELLS, SHAPES, Setting, sweep
+from rsmpm_ti.process import no_current_folder
 from rsmpm_ti.records.files import write_csv
 
 CSV_NAME, PICTURE_NAME = "speed_vs_error.csv", "speed_vs_error.png"
@@ -43,7 +44,7 @@ def run_sweep(cases: list[str], finest: bool, jobs: int, out: Path) -> list[Entr
         write_csv(path, [*NAMES, "error", "wall_s", "particle_steps"], (_row(*entry) for entry in entries))
 
     save()
-    with multiprocessing.get_context("spawn").Pool(jobs, maxtasksperchild=8) as pool:
+    with no_current_folder(), multiprocessing.get_context("spawn").Pool(jobs, maxtasksperchild=8) as pool:
         for k, (setting, m, problem) in enumerate(pool.imap_unordered(_work, settings), 1):
             head = f"{k}/{len(settings)} {setting.case} {setting.cells}: {setting.scheme}"
             if m is None:

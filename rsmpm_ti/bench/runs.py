@@ -2,11 +2,12 @@
 
 import json
 import subprocess
-import sys
 import tempfile
 import time
 from pathlib import Path
 from statistics import median
+
+from rsmpm_ti.process import python_command
 
 NO_PICTURES = ("--frames", "0", "--no-movie", "--set", "output.vtu=0")
 VARIANTS = {
@@ -20,7 +21,7 @@ VARIANTS = {
 def one(scene: str, options: list[str]) -> dict[str, float]:
     """Seconds of one run, from starting Python to the last file."""
     with tempfile.TemporaryDirectory() as out:
-        command = [sys.executable, "-m", "rsmpm_ti.scene", scene, *options, "--out", out]
+        command = python_command("from rsmpm_ti.scene import main; sys.exit(main())", scene, *options, "--out", out)
         start = time.perf_counter()
         subprocess.run(command, stdout=subprocess.DEVNULL, check=True)
         total = time.perf_counter() - start

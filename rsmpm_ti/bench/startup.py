@@ -3,9 +3,10 @@
 import json
 import os
 import subprocess
-import sys
 import tempfile
 import time
+
+from rsmpm_ti.process import python_command
 
 CHILD = """
 import json, sys, time
@@ -35,15 +36,7 @@ def start(scene: str, quick: bool, threads: int, rounds: int) -> str:
     with tempfile.TemporaryDirectory() as cache:
         for k in range(rounds + 1):
             environment = os.environ | {"TI_OFFLINE_CACHE_FILE_PATH": cache, "ENABLE_TAICHI_HEADER_PRINT": "0"}
-            command = [
-                sys.executable,
-                "-c",
-                CHILD,
-                repr(time.time()),
-                scene,
-                "quick" if quick else "full",
-                str(threads),
-            ]
+            command = python_command(CHILD, repr(time.time()), scene, "quick" if quick else "full", str(threads))
             done = subprocess.run(command, env=environment, capture_output=True, text=True, check=True)
             times = json.loads(done.stdout.splitlines()[-1])
             lines.append(

@@ -11,6 +11,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 
 from rsmpm_ti.bench.sweep import SHAPES
+from rsmpm_ti.process import no_current_folder
 
 WIDTHS = {"linear": 2, "bspline": 3}
 """Shape functions that the twins know, and their nodes per axis."""
@@ -115,7 +116,8 @@ class Workers:
         context = multiprocessing.get_context("spawn")
         here, there = context.Pipe()
         process = context.Process(target=_serve, args=(there, runner.precision, runner.threads), daemon=True)
-        process.start()
+        with no_current_folder():
+            process.start()
         self._processes.append(process)
         return here
 

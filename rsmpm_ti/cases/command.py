@@ -2,12 +2,12 @@
 
 import argparse
 import os
-import sys
 from dataclasses import dataclass
 from pathlib import Path
 
 from rsmpm_ti.cases.report import print_head, print_rows, write_table
 from rsmpm_ti.cases.running import cases_of, run_cases
+from rsmpm_ti.process import command, tell
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -31,6 +31,7 @@ def parser(suite: Suite) -> argparse.ArgumentParser:
     return p
 
 
+@command
 def run_suite(suite: Suite, arguments: list[str] | None = None) -> int:
     """Exit status: 0 every row passes, 1 some do not or a case breaks, 2 the command is refused."""
     options, cases = parser(suite).parse_args(arguments), cases_of(suite.catalogue)
@@ -41,14 +42,14 @@ def run_suite(suite: Suite, arguments: list[str] | None = None) -> int:
     unknown = [name for name in options.cases if name not in cases]
     if unknown or options.jobs < 1:
         problem = f"unknown case {', '.join(unknown)}" if unknown else f"--jobs {options.jobs} is not 1 or more"
-        print(f"{suite.name}: {problem}; the cases are {', '.join(cases)}", file=sys.stderr)
+        tell(f"{suite.name}: {problem}; the cases are {', '.join(cases)}")
         return 2
     names = options.cases or [case.name for case in cases.values() if options.full or case.quick]
     out = Path(options.out)
     try:
         out.mkdir(parents=True, exist_ok=True)
     except OSError as error:
-        print(f"{suite.name}: {out} cannot be written: {error.strerror}; give another with --out", file=sys.stderr)
+        tell(f"{suite.name}: {out} cannot be written: {error.strerror}; give another with --out")
         return 2
     jobs = min(options.jobs, len(names))
     rows, misses = [], 0

@@ -9,6 +9,7 @@ from pathlib import Path
 
 from rsmpm_ti.cases.case import Case, Row
 from rsmpm_ti.cases.report import draw
+from rsmpm_ti.process import no_current_folder
 
 
 @dataclass(frozen=True)
@@ -49,5 +50,5 @@ def _work(task: tuple) -> Finished:
 
 def run_cases(catalogue: str, names: list[str], full: bool, out: Path, jobs: int, threads: int) -> Iterator[Finished]:
     """Each case in a process of its own, `jobs` at a time: Taichi's memory of one never meets the next."""
-    with multiprocessing.get_context("spawn").Pool(jobs, maxtasksperchild=1) as pool:
+    with no_current_folder(), multiprocessing.get_context("spawn").Pool(jobs, maxtasksperchild=1) as pool:
         yield from pool.imap_unordered(_work, [(catalogue, name, full, out, threads) for name in names])

@@ -13,7 +13,7 @@ from collections.abc import Iterable
 from pathlib import Path
 
 from rsmpm_ti import __version__
-from rsmpm_ti.errors import SceneError, refuse
+from rsmpm_ti.errors import SceneError, refuse, room
 from rsmpm_ti.output import manifest
 from rsmpm_ti.output.earlier import check_place, previous_of, remove_aside, set_all_aside, set_aside, summary_of
 from rsmpm_ti.output.files import CHECKPOINTS, whole
@@ -69,7 +69,7 @@ def prepare(
 
 def unwritable(out: Path, error: Exception) -> SceneError:
     reason = getattr(error, "strerror", None) or error
-    return SceneError(f"output folder {out} cannot be written: {reason}; make room, or give another with --out")
+    return SceneError(f"output folder {out} cannot be written: {reason}; {room(str(error))}give another with --out")
 
 
 def record(scene: Scene, name: str, precision: str) -> bytes:

@@ -16,26 +16,27 @@ import os
 import pickle
 import signal
 import subprocess
-import sys
 import tempfile
 import threading
 import time
 from collections.abc import Callable
 from concurrent.futures import Future, ThreadPoolExecutor
-from pathlib import Path
+from dataclasses import replace
 
 import numpy as np
 
-import rsmpm_ti
 from rsmpm_ti.errors import SceneError
 from rsmpm_ti.output.files import COLLECTION, frame_name
 from rsmpm_ti.output.folder import RunFolder
 from rsmpm_ti.output.pictures import Commission
+from rsmpm_ti.process import python_command
 from rsmpm_ti.solver.readout import Readout
 
 WAITING_BYTES = 512 * 2**20
 """Orders that may wait for the child, which is behind while much fails: each holds a copy of the particles. One order
 may be larger."""
+
+CHILD = "from rsmpm_ti.output.writer_process import main; sys.exit(main())"
 
 REPORT, READY, ALIVE = "rsmpm_ti writer: ", "rsmpm_ti writer is ready", "rsmpm_ti writer is alive"
 """The line by which the child says how it went begins with the first; it is up by the second; the third is a sign of
@@ -57,14 +58,13 @@ class Writer:
         self.out, self.folder, self.warning, self.cpu_s, self.problem = wanted.out, folder, "", 0.0, ""
         self._kinds, self._movie = wanted.kinds, (f"{wanted.name}.mp4",) if wanted.movie else ()
         self._hurried = hurried
-        package = str(Path(rsmpm_ti.__file__).resolve().parent.parent)
-        paths = os.pathsep.join(filter(None, (package, os.environ.get("PYTHONPATH"))))
         try:
+            wanted = replace(wanted, out=wanted.out.absolute())
             self._errors = tempfile.TemporaryFile()
             self._child = subprocess.Popen(
-                [sys.executable, "-m", "rsmpm_ti.output.writer_process"],
+                python_command(CHILD),
                 stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=self._errors,
-                env=os.environ | {"PYTHONPATH": paths},
+                cwd=wanted.out,  # libraries read settings in the current folder, which may be gone besides
                 start_new_session=True,  # Ctrl-C is for the solver, which then says what is still to be written
                 pass_fds=folder.lock.passed,
             )  # fmt: skip

@@ -1,4 +1,4 @@
-"""python -m rsmpm_ti.output.writer_process: paints and writes what a solver orders by standard input; see writer.py."""
+"""The process that paints and writes what a solver orders by standard input; see writer.py, which starts it."""
 
 import contextlib
 import json
@@ -79,6 +79,7 @@ def main() -> int:
     if hasattr(os, "nice"):
         os.nice(NICENESS)
     threading.Thread(target=_live, daemon=True).start()
+    os.environ["MPLBACKEND"] = "agg"  # matplotlib does not bear the name of one that is not there
     desk, problem, order = Desk(), "", ("",)
     while order[0] != "close" and not problem:
         try:
@@ -116,7 +117,3 @@ def _vanish() -> None:
 def _file(error: BaseException) -> str:
     name = getattr(error, "filename", None)
     return f" ({name})" if name else ""
-
-
-if __name__ == "__main__":
-    sys.exit(main())

@@ -5,9 +5,9 @@ Whether it works is asked of a child process (`probe`), because some of the ways
 
 import functools
 import json
+import os
 import signal
 import subprocess
-import sys
 import tempfile
 from pathlib import Path
 
@@ -15,6 +15,7 @@ import numpy as np
 import taichi as ti
 
 from rsmpm_ti.paint.palette import Palette, View, squares_in_view
+from rsmpm_ti.process import python_command
 
 PROBE = """
 import json, taichi as ti
@@ -33,8 +34,12 @@ def probe(timeout: float = 60.0) -> tuple[bool, str]:
     """Whether GGUI can draw here, and the reason in one line. Takes about 2 s, once per process; never raises."""
     try:
         with tempfile.TemporaryDirectory() as folder:  # a closing window writes imgui.ini where it runs
-            command = [sys.executable, "-c", PROBE]
-            child = subprocess.run(command, capture_output=True, text=True, timeout=timeout, cwd=folder)
+            # it follows no variables of Taichi's either, and tells its makers nothing
+            quiet = {name: value for name, value in os.environ.items() if not name.startswith("TI_")}
+            quiet |= {"TI_SKIP_VERSION_CHECK": "ON"}
+            child = subprocess.run(
+                python_command(PROBE), env=quiet, capture_output=True, text=True, timeout=timeout, cwd=folder
+            )
     except subprocess.TimeoutExpired:
         return False, f"GGUI's probe did not answer within {timeout:g} s"
     except OSError as error:

@@ -3,10 +3,8 @@
 from collections.abc import Callable
 from typing import Any
 
-from rsmpm_ti.errors import ObserverError, SceneError, reason
+from rsmpm_ti.errors import ObserverError, SceneError, reason, still_kept
 from rsmpm_ti.output.folder import FolderGone
-
-KEPT = "what is complete is kept; go on with --resume"
 
 
 class Attempts:
@@ -22,14 +20,17 @@ class Attempts:
         except (ObserverError, FolderGone) as error:  # the one is of the user's own, of the other nothing is kept
             self._take(error)
         except SceneError as error:
-            self._take(SceneError(f"{error}; {KEPT}"))
+            self._fail(str(error))
         except OSError as error:
-            self._take(SceneError(f"{error.filename or 'a file'} cannot be written: {reason(error)}; {KEPT}"))
+            self._fail(f"{error.filename or 'a file'} cannot be written: {reason(error)}")
         except Exception as error:  # whatever it is, what comes after it is still done
-            failure = SceneError(f"{what}: {reason(error)}; {KEPT}")
-            failure.__cause__ = error
-            self._take(failure)
+            self._fail(f"{what}: {reason(error)}", error)
         return None
+
+    def _fail(self, said: str, cause: Exception | None = None) -> None:
+        problem = SceneError(f"{said}; {still_kept(said)}")
+        problem.__cause__ = cause
+        self._take(problem)
 
     def _take(self, problem: SceneError) -> None:
         self.problem = self.problem or problem

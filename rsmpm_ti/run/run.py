@@ -8,11 +8,11 @@ from typing import Any
 
 from rsmpm_ti.analysis.load_curve import FilteredLoad
 from rsmpm_ti.backend.start import start_taichi
-from rsmpm_ti.errors import BrokenApart, ObserverError, RockWarning, SceneError, UnstableRun, reason, refuse
+from rsmpm_ti.errors import BrokenApart, ObserverError, RockWarning, SceneError, UnstableRun, reason, refuse, still_kept
 from rsmpm_ti.output.folder import RunFolder, named, prepare
 from rsmpm_ti.records.result import Progress, Result
 from rsmpm_ti.records.tables import Column
-from rsmpm_ti.run.attempts import KEPT
+from rsmpm_ti.run.alone import alone
 from rsmpm_ti.run.finish import finish
 from rsmpm_ti.run.interrupt import Interrupt, asked_to_stop
 from rsmpm_ti.run.settings import CHECKPOINT_S, Settings
@@ -20,6 +20,7 @@ from rsmpm_ti.spec.review.sentences import review
 from rsmpm_ti.spec.scene import Scene
 
 
+@alone
 def simulate(
     scene: Scene,
     *,
@@ -68,7 +69,7 @@ def simulate(
 
         said += disk_said(scene, sum(len(body.x) for body in seeds), out)
     for sentence in said:
-        warnings.warn(sentence, RockWarning, stacklevel=2)
+        warnings.warn(sentence, RockWarning, stacklevel=3)  # above the decorator
     interrupt = Interrupt()
     with asked_to_stop(interrupt):  # from here on a signal does not find a run half begun
         if out is None:
@@ -215,7 +216,7 @@ class Run:
                 stopped, failure = str(error), error
             except (MemoryError, OSError) as error:
                 stopped = f"{reason(error)}; at step {self.clock.step}, t = {self.clock.time:.6g} s"
-                failure = SceneError(f"the run cannot go on: {stopped}; {KEPT}")
+                failure = SceneError(f"the run cannot go on: {stopped}; {still_kept(stopped)}")
                 failure.__cause__ = error
             result, late = finish(self, stopped, failure)
             if not self.interrupt.hurried:  # else what was given up was asked for
@@ -283,7 +284,7 @@ class Run:
             view.fraction = 1.0  # who looks at the end looks now
         self._look(view)
         if self.writer is not None and self.writer.problem:  # asked now that everybody has seen this row
-            raise SceneError(f"{self.out} cannot be written: {self.writer.problem}; {KEPT}")
+            raise SceneError(f"{self.out} cannot be written: {self.writer.problem}; {still_kept(self.writer.problem)}")
         if self.settings.progress is not None:
             self.settings.progress(self._progress(view))
 

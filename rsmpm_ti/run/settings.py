@@ -11,6 +11,7 @@ from rsmpm_ti.errors import refuse
 from rsmpm_ti.records.history_table import HISTORY_COLUMNS
 from rsmpm_ti.records.result import Progress
 from rsmpm_ti.records.tables import Column
+from rsmpm_ti.spec.library.names import ALLOWED, is_name
 from rsmpm_ti.spec.scene import Scene
 from rsmpm_ti.spec.scene_checks import check_precision
 
@@ -34,6 +35,8 @@ class Settings:
 
     def check(self, scene: Scene) -> None:
         """Raises SceneError for what cannot be run, before anything compiles."""
+        if not is_name(self.name):
+            raise refuse("name", self.name, ALLOWED, "the folder is given by `out`")
         if self.precision not in ("f64", "f32"):
             raise refuse("precision", self.precision, "'f64' or 'f32'")
         check_precision(scene, self.precision)

@@ -1,4 +1,4 @@
-"""Find a scene, apply overrides, and say clearly what is wrong with either."""
+"""Load a scene, apply overrides, and say clearly what is wrong with either."""
 
 import contextlib
 import dataclasses
@@ -9,50 +9,18 @@ import sys
 import traceback
 import types
 import typing
+import warnings
 from dataclasses import replace
 from pathlib import Path
 
 from pydantic import PydanticUserError, TypeAdapter, ValidationError
 
-import rsmpm_ti
 from rsmpm_ti.checks import KNOWN, STRICT, annotations, members, native, phrase, remedy, unit_of, within
-from rsmpm_ti.errors import SceneError, refuse, short, shown
+from rsmpm_ti.errors import RockWarning, SceneError, refuse, short, shown
+from rsmpm_ti.spec.library.places import find, in_place_of
 from rsmpm_ti.spec.scene import Scene, Schedule, unchecked
 from rsmpm_ti.spec.scene_json import read_scene
 from rsmpm_ti.units import quantity
-
-PACKAGE = Path(rsmpm_ti.__file__).parent
-SHIPPED = PACKAGE / "scenes"
-"""Where a wheel carries the scenes; a checkout has them in ./scenes."""
-
-
-def folders() -> list[Path]:
-    """Where scenes are looked for, in order."""
-    return [f for f in (Path("scenes"), SHIPPED, PACKAGE.parent / "scenes") if f.is_dir()]
-
-
-def available() -> dict[str, Path]:
-    """Scene name -> file; the first folder wins."""
-    found: dict[str, Path] = {}
-    for folder in folders():
-        for path in sorted(folder.glob("[a-z]*.py")):
-            found.setdefault(path.stem, path)
-    return found
-
-
-def find(name: str) -> Path:
-    """A path as given, else a scene by name."""
-    path = Path(name)
-    if path.suffix in (".py", ".json"):
-        if path.is_file():
-            return path
-        raise SceneError(f"scene file {short(name)} does not exist")
-    scenes = available()
-    if name not in scenes:
-        raise SceneError(
-            f"no scene named {shown(name)}; there are: {', '.join(sorted(scenes)) or 'none'} (or give a path)"
-        )
-    return scenes[name]
 
 
 def load_scene(name: str, *, quick: bool = False, settings: dict[str, object] | None = None, **overrides) -> Scene:
@@ -66,6 +34,8 @@ def load_scene(name: str, *, quick: bool = False, settings: dict[str, object] | 
     A .py scene is a program and is run; a .json scene is data and is not. Raises SceneError.
     """
     path, settings = find(name), dict(settings or {})
+    if said := in_place_of(name, path):
+        warnings.warn(said, RockWarning, stacklevel=2)
     recorded = path.suffix == ".json"
     function, parameters, quick_keywords = (None, {}, {}) if recorded else _function(path)
     fields = _fields_of(settings, parameters)
@@ -319,12 +289,6 @@ def _with_fields(owner, kind, changes: dict[str, tuple[list[str], object]], dim:
     except (TypeError, ValueError, AttributeError, ArithmeticError) as error:
         given = ", ".join(f"{short(key)}={short(str(value))}" for key, (_, value) in changes.items())
         raise SceneError(f"{given} is refused: {type(owner).__name__} cannot be built: {error}") from None
-
-
-def scene_name(name: str) -> str:
-    """The name under which a run is filed."""
-    path = Path(name)
-    return path.parent.name if path.name == "scene.json" else path.stem
 
 
 def machine() -> dict[str, str]:

@@ -6,6 +6,7 @@ import sys
 from pathlib import Path
 
 from rsmpm_ti.cases.report import draw, print_head, print_rows, write_table
+from rsmpm_ti.process import command, tell
 from rsmpm_ti.study.catalogue import STUDIES
 from rsmpm_ti.study.runs import all_kept, run_all
 
@@ -24,6 +25,7 @@ def parser() -> argparse.ArgumentParser:
     return p
 
 
+@command
 def main(arguments: list[str] | None = None) -> int:
     options = parser().parse_args(arguments)
     if options.list:
@@ -34,7 +36,7 @@ def main(arguments: list[str] | None = None) -> int:
         problem = "name a study" if not options.studies else f"unknown study {', '.join(unknown)}"
         if options.jobs < 1:
             problem = f"--jobs {options.jobs} is not 1 or more"
-        print(f"study: {problem}; the studies are {', '.join(STUDIES)}", file=sys.stderr)
+        tell(f"study: {problem}; the studies are {', '.join(STUDIES)}")
         return 2
     misses = 0
     for name in options.studies:
@@ -44,9 +46,9 @@ def main(arguments: list[str] | None = None) -> int:
         for tag, result, seconds in all_kept(runs, folder) if options.kept else run_all(runs, folder, options.jobs):
             results[tag] = result
             total += seconds
-            print(f"{name}: {tag} ({len(results)} of {len(runs)}) {seconds:.0f} s", file=sys.stderr, flush=True)
+            tell(f"{name}: {tag} ({len(results)} of {len(runs)}) {seconds:.0f} s")
         if not results:
-            print(f"study: none of the runs of {name} is kept in {folder}; run it without --kept", file=sys.stderr)
+            tell(f"study: none of the runs of {name} is kept in {folder}; run it without --kept")
             return 2
         outcome = study.finish({run.tag: results[run.tag] for run in runs if run.tag in results})
         draw(folder / f"{name}.png", outcome)

@@ -14,8 +14,9 @@ import numpy as np
 
 from rsmpm_ti import __version__
 from rsmpm_ti.cases.case import Outcome
+from rsmpm_ti.process import no_current_folder
 from rsmpm_ti.records.files import complete
-from rsmpm_ti.spec.loader import PACKAGE, available
+from rsmpm_ti.spec.library.places import PACKAGE, available
 
 SOLVER = ("", "records", "rock", "method", "spec", "fields", "analysis", "failure", "mpm", "solver", "run")
 """Rooms whose code a run's numbers may depend on."""
@@ -99,5 +100,6 @@ def run_all(runs: list[Run], folder: Path, jobs: int) -> Iterator[tuple[str, dic
         yield tag, result, seconds
     waiting = [(run, folder) for run in runs if run.tag not in done]
     if waiting:
-        with multiprocessing.get_context("spawn").Pool(min(jobs, len(waiting)), maxtasksperchild=1) as pool:
+        spawn, jobs = multiprocessing.get_context("spawn"), min(jobs, len(waiting))
+        with no_current_folder(), spawn.Pool(jobs, maxtasksperchild=1) as pool:
             yield from pool.imap_unordered(_work, waiting)

@@ -101,3 +101,11 @@ def test_pairs_beyond_reach_are_not_joined():
     x = np.array([[0.0, 0.0], [0.9, 0.0], [2.0, 0.0]])
     way = distances(neighbour_graph(x, 1.0), 0)
     np.testing.assert_allclose(way, [0.0, 0.9, np.inf])
+
+
+def test_graph_of_a_band_has_the_indices_that_every_scipy_takes():
+    """Of 64 bits, SciPy 1.13 refuses them in `dijkstra`."""
+    graph = neighbour_graph(lattice((0.0, 0.0), (4.0 * SPACING, 4.0 * SPACING)), 1.5 * SPACING)
+    band = np.arange(8)
+    for part in (graph, graph[band][:, band]):
+        assert part.indices.dtype == part.indptr.dtype == np.int32

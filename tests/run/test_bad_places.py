@@ -17,13 +17,13 @@ from snapshots import snapshot_of
 from writer_orders import NO_ROWS, started
 
 from rsmpm_ti.backend import kernel_cache
-from rsmpm_ti.errors import SceneError
+from rsmpm_ti.errors import SceneError, still_kept
 from rsmpm_ti.output.files import CHECKPOINTS, write_checkpoint
 from rsmpm_ti.paint.movie import Movie
 from rsmpm_ti.paint.png import write_png
 from rsmpm_ti.records.files import write_json
 from rsmpm_ti.run import checkpoint
-from rsmpm_ti.run.attempts import KEPT, Attempts
+from rsmpm_ti.run.attempts import Attempts
 from rsmpm_ti.run.settings import Settings
 from rsmpm_ti.scene import main
 from rsmpm_ti.spec.loader import load_scene, machine
@@ -71,7 +71,7 @@ def in_the_way(tmp_path: Path, kind: str) -> str:
 )
 def test_folder_that_cannot_be_written_is_refused_before_anything_starts(refused, tmp_path, kind):
     message = refused("--out", in_the_way(tmp_path, kind))
-    assert "cannot be written" in message and "--out" in message
+    assert "cannot be written" in message and "--out" in message and "make room" not in message
     assert all(path.read_text() == "kept" for path in tmp_path.rglob("*") if path.is_file())
 
 
@@ -139,7 +139,8 @@ def test_every_write_is_tried_and_the_first_failure_is_told(tmp_path):
     for work in (full, lambda: written.append(1), lambda: {}["key"], lambda: written.append(2)):
         attempt(work)
     assert written == [1, 2]
-    assert str(attempt.problem) == f"a file cannot be written: No space left on device; {KEPT}"
+    remedy = "what is complete is kept; make room and go on with --resume"
+    assert str(attempt.problem) == f"a file cannot be written: No space left on device; {remedy}"
 
 
 @pytest.mark.parametrize("error, said", [(MemoryError(), "memory has run out"), (KeyError("a"), "KeyError: 'a'")])
@@ -149,7 +150,7 @@ def test_whatever_fails_at_the_end_is_told_in_one_line(error, said):
 
     attempt = Attempts()
     assert attempt(fail, what="it cannot be measured") is None
-    assert str(attempt.problem) == f"it cannot be measured: {said}; {KEPT}"
+    assert str(attempt.problem) == f"it cannot be measured: {said}; {still_kept(said)}"
 
 
 def test_movie_is_given_up_where_its_encoder_is_no_program(tmp_path, monkeypatch):

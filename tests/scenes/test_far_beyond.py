@@ -10,7 +10,8 @@ import math
 import pytest
 
 from rsmpm_ti.scene import main
-from rsmpm_ti.spec.loader import available, load_scene
+from rsmpm_ti.spec.library.places import available
+from rsmpm_ti.spec.loader import load_scene
 
 UCS = 25.520e6
 """Of the rock with which scenes ship [Pa]."""

@@ -35,7 +35,8 @@ from rsmpm_ti.analysis import summary
 from rsmpm_ti.checks import KNOWN
 from rsmpm_ti.errors import SceneError, shown
 from rsmpm_ti.scene import main
-from rsmpm_ti.spec.loader import available, keywords_of, load_scene
+from rsmpm_ti.spec.library.places import available
+from rsmpm_ti.spec.loader import keywords_of, load_scene
 from rsmpm_ti.spec.loading_start import AtRest
 from rsmpm_ti.spec.scene_json import read_scene, to_plain
 
@@ -98,7 +99,7 @@ def command():
     """run(setting, ...) -> (the scene or None, message) of `cube --check`, in this process."""
     patch, accepted = pytest.MonkeyPatch(), []
 
-    def describe(scene, threads=None) -> str:
+    def describe(scene, threads=None, file=None) -> str:
         check_runnable(scene)
         accepted.append(scene)
         return "runs"

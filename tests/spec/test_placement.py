@@ -25,7 +25,7 @@ from rsmpm_ti import (
     load_scene,
 )
 from rsmpm_ti.errors import SceneError
-from rsmpm_ti.spec.loader import available
+from rsmpm_ti.spec.library.places import available
 from rsmpm_ti.spec.regions import slits_of
 from rsmpm_ti.spec.review.placement import area_errors, measure, outside_fraction
 from rsmpm_ti.spec.review.sentences import review

@@ -9,7 +9,7 @@ import pytest
 from rsmpm_ti import Box, Difference, Directional, GPa, Hooke, LinearSoftening, MohrCoulomb, MPa, Rock, Slit, load_scene
 from rsmpm_ti.errors import SceneError
 from rsmpm_ti.rock.presets import lab_rock
-from rsmpm_ti.spec.loader import available
+from rsmpm_ti.spec.library.places import available
 from rsmpm_ti.spec.review.plausible import LEAST_ROWS, RANGES, implausible
 from rsmpm_ti.spec.scene import LEAST_ROWS as FEWEST_ROWS
 from rsmpm_ti.spec.scene import ROW_STEPS

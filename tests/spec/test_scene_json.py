@@ -9,6 +9,7 @@ import pytest
 from small_scene import SHIPPED, make, platens, refusal
 
 from rsmpm_ti.checks import KNOWN
+from rsmpm_ti.errors import SceneError
 from rsmpm_ti.method.shape import Gimp
 from rsmpm_ti.method.transfer import Apic
 from rsmpm_ti.rock.criteria import MohrCoulomb
@@ -184,5 +185,84 @@ class Plain:
 def test_an_object_of_a_scene_files_own_is_told_by_its_class_and_what_it_holds():
     scene = make(loading_force_field=Plain())
     assert json.loads(json.dumps(to_plain(scene)))["loading"]["force_field"] == {
-        "type": "Plain", "b": 9.81, "place": [1.0, 2.0],
+        "type": "Plain", "own": {"b": 9.81, "place": [1.0, 2.0]},
     }  # fmt: skip
+
+
+class Held:
+    """A force field that holds what no JSON does."""
+
+    def __init__(self, **held):
+        self.__dict__.update(held)
+
+    def acceleration(self, X, t):
+        return X
+
+
+class Shy:
+    def __getattribute__(self, name):
+        raise RuntimeError(name)
+
+
+LOOP: list = [1]
+LOOP.append(LOOP)
+DEEP: list = []
+for _ in range(5000):
+    DEEP = [DEEP]
+
+HARD = {
+    "a function": (len, {"unrecorded": "builtin_function_or_method"}),
+    "a circle": (LOOP, [1, {"unrecorded": "list"}]),
+    "an object": (object(), {"unrecorded": "object"}),
+    "an object that does not tell": (Shy(), {"unrecorded": "Shy"}),
+    "a set": ({3, 1, 2}, {"own": [1, 2, 3], "type": "set"}),
+    "a dict": ({"a": 1, 2: (3,)}, {"own": [["a", 1], [2, [3]]], "type": "dict"}),
+    "a class": (Held, {"unrecorded": "type"}),
+    "bytes": (b"x", {"unrecorded": "bytes"}),
+    "a complex number": (1j, {"unrecorded": "complex"}),
+    "an array of objects": (np.array([object()]), {"unrecorded": "object [1]"}),
+    "complex numbers": (np.array([1j]), {"unrecorded": "complex128 [1]"}),
+    "a time": (np.datetime64("2026-01-01"), {"unrecorded": "datetime64[D] []"}),
+    "NumPy's scalars": ((np.float32(0.5), np.int8(3), np.bool_(True), np.longdouble(2)), [0.5, 3, True, 2.0]),
+    "no number": (float("nan"), {"unrecorded": "float"}),
+    "an endless integer": (10**5000, {"unrecorded": "int"}),
+    "half a letter": ("\ud800", "\ud800"),
+}
+
+
+@pytest.mark.parametrize("name", HARD)
+def test_what_cannot_be_recorded_is_recorded_as_such(name):
+    thing, wanted = HARD[name]
+    plain = to_plain(make(loading_force_field=Held(thing=thing)))
+    assert plain["loading"]["force_field"] == {"type": "Held", "own": {"thing": wanted}}
+    again = json.loads(json.dumps(plain, allow_nan=False))
+    assert again == to_plain(make(loading_force_field=Held(thing=thing))), "and tells one run from another"
+    with pytest.raises(SceneError, match="^scene.loading.force_field is of 'Held', a class of the scene file that was"):
+        from_plain(again)
+
+
+def test_what_is_too_much_to_record_is_told_by_its_digest():
+    def told(thing):
+        return to_plain(make(loading_force_field=Held(thing=thing)))["loading"]["force_field"]["own"]["thing"]
+
+    many = np.arange(20_000.0)
+    assert told(many)["unrecorded"] == "float64 [20000]" and told(many) == told(many.copy()) != told(many + 1.0)
+    assert len(json.dumps(told(DEEP))) < 300
+
+
+def test_a_class_with_the_name_of_one_that_is_known_is_not_taken_for_it():
+    @dataclasses.dataclass(frozen=True, kw_only=True)
+    class Box:
+        lower: tuple
+        upper: tuple
+
+        def contains(self, x):
+            return x[:, 0] > 1.0
+
+        def bounds(self):
+            return np.array(self.lower), np.array(self.upper)
+
+    scene = make()
+    body = dataclasses.replace(scene.bodies[0], region=Box(lower=(0.0, 0.0), upper=(0.05, 0.1)))
+    with pytest.raises(SceneError, match=r"^scene.bodies\[0\].region is of 'Box', a class of the scene file"):
+        through_json(dataclasses.replace(scene, bodies=(body,)))

@@ -60,7 +60,7 @@ def test_one_that_is_larger_than_any_scene_is_not_read(tmp_path, monkeypatch):
     with pytest.raises(SceneError, match="is larger than 16 MiB"):
         read_scene(path)
     assert time.perf_counter() - start < 5.0
-    monkeypatch.setattr(scene_json, "LARGEST", 100)
+    monkeypatch.setattr(scene_json, "LARGEST_BYTES", 100)
     path.write_text(" " * 101)
     with pytest.raises(SceneError, match="is larger than"):
         read_scene(path)
@@ -71,7 +71,7 @@ def test_the_most_bodies_are_still_a_record(tmp_path):
 
     plain = to_plain(load_scene("cube", quick=True))
     plain["bodies"] *= MAX_BODIES
-    assert len(json.dumps({"scene": plain}, indent=2)) < scene_json.LARGEST
+    assert len(json.dumps({"scene": plain}, indent=2)) < scene_json.LARGEST_BYTES
 
 
 def test_two_keys_among_a_hundred_thousand_are_found_at_once(tmp_path):

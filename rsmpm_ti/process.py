@@ -1,0 +1,145 @@
+"""This process and the Pythons that it starts: what they see, and what is done where a command's output ends."""
+
+import contextlib
+import errno
+import functools
+import os
+import subprocess
+import sys
+from collections.abc import Callable, Iterator
+from pathlib import Path
+from typing import ParamSpec, TextIO
+
+START = """
+import importlib.util, sys
+sys.path[:], sys.pycache_prefix = {path}, {prefix}
+spec = importlib.util.spec_from_file_location("rsmpm_ti", {init}, submodule_search_locations=[{folder}])
+sys.modules["rsmpm_ti"] = importlib.util.module_from_spec(spec)
+spec.loader.exec_module(sys.modules["rsmpm_ti"])
+"""
+
+
+def python_command(code: str, *arguments: str) -> list[str]:
+    """Command of a Python that runs `code` and sees what this one sees: search path, flags, warnings, this package.
+
+    `python -m`, or a folder in PYTHONPATH, would put the current folder or all installed packages before the standard
+    library: somebody's ./json.py would be run. So it starts alone (-I) and is told its path; an empty entry of that,
+    which means whatever folder is the current one, is left out.
+    """
+    package = Path(__file__).resolve().parent
+    entries = [entry for entry in sys.path if isinstance(entry, str) and entry]
+    path = [os.path.abspath(entry) if os.path.exists(entry) else entry for entry in entries]
+    start = START.format(
+        path=ascii(path),
+        prefix=ascii(sys.pycache_prefix),
+        init=ascii(str(package / "__init__.py")),
+        folder=ascii(str(package)),
+    )
+    flags = subprocess._args_from_interpreter_flags()  # type: ignore[attr-defined]  # as multiprocessing does
+    return [sys.executable, *flags, "-I", "-X", f"utf8={sys.flags.utf8_mode}", "-c", start + code, *arguments]
+
+
+@contextlib.contextmanager
+def no_current_folder() -> Iterator[None]:
+    """Within it, processes of `multiprocessing` do not look for modules in the current folder (from Python 3.11 on)."""
+    before = os.environ.get("PYTHONSAFEPATH")
+    os.environ["PYTHONSAFEPATH"] = "1"
+    try:
+        yield
+    finally:
+        if before is None:
+            del os.environ["PYTHONSAFEPATH"]
+        else:
+            os.environ["PYTHONSAFEPATH"] = before
+
+
+Arguments = ParamSpec("Arguments")
+
+
+def command(main: Callable[Arguments, int]) -> Callable[Arguments, int]:
+    """Decorator of a command's main, which gives its exit status: it may have streams that are closed, full or ASCII.
+
+    Closed ones are opened to nowhere, or a file of the run would get their number and all that is printed. A letter
+    that cannot be printed is escaped. Output that cannot be written does not end what the command does; its status is
+    then 2, after a line. That its reader has gone, as `head` does, is no failure.
+    """
+
+    @functools.wraps(main)
+    def run(*arguments: Arguments.args, **keywords: Arguments.kwargs) -> int:
+        _open_streams()
+        if sys.stdout is None or isinstance(sys.stdout, Output):  # of a command that runs this one
+            return main(*arguments, **keywords)
+        output = Output(sys.stdout)
+        with _as_stdout(output):
+            try:
+                status = main(*arguments, **keywords)
+            except SystemExit:  # --help, or an option that there is not
+                if output.complete():
+                    raise
+                return 2
+        return status if output.complete() else 2
+
+    return run
+
+
+class Output:
+    """A stream that raises nothing where it cannot be written, but knows that."""
+
+    def __init__(self, stream: TextIO):
+        self.stream, self.error = stream, 0
+        with contextlib.suppress(AttributeError):  # of what stands in for a stream
+            stream.reconfigure(errors="backslashreplace")  # type: ignore[attr-defined]
+
+    def __getattr__(self, name: str):
+        return getattr(self.stream, name)
+
+    def write(self, text: str) -> int:
+        self._try(lambda: self.stream.write(text))
+        return len(text)
+
+    def flush(self) -> None:
+        self._try(self.stream.flush)
+
+    def complete(self) -> bool:
+        """Whether everything is written that somebody reads; a line says why not."""
+        self.flush()
+        if self.error:
+            os.dup2(os.open(os.devnull, os.O_WRONLY), 1)  # Python flushes once more when it ends
+        if self.error in (0, errno.EPIPE):
+            return True
+        tell(f"rsmpm_ti: standard output cannot be written: {os.strerror(self.error)}; send it elsewhere")
+        return False
+
+    def _try(self, write: Callable[[], object]) -> None:
+        try:
+            write()
+        except OSError as error:
+            self.error = error.errno or errno.EIO
+
+
+@contextlib.contextmanager
+def _as_stdout(output: Output) -> Iterator[None]:
+    """Taichi takes a standard output that is not the first one for a notebook's: it says so, and kernels get slower."""
+    now, first = sys.stdout, sys.__stdout__
+    sys.stdout = output  # it does what a stream does
+    if first is now:
+        sys.__stdout__ = output  # type: ignore[misc, assignment]
+    try:
+        yield
+    finally:
+        sys.stdout, sys.__stdout__ = now, first  # type: ignore[misc]
+
+
+def tell(line: str) -> None:
+    """A line on standard error, which ends nothing where it cannot be written."""
+    if sys.stderr is not None:
+        with contextlib.suppress(OSError):
+            print(line, file=sys.stderr, flush=True)
+
+
+def _open_streams() -> None:
+    for number in range(3):
+        try:
+            os.fstat(number)
+        except OSError:
+            os.open(os.devnull, os.O_RDWR)  # the lowest number that is free
