@@ -25,7 +25,7 @@ from rsmpm_ti.spec.seeding import Seeds
 
 STATUSES = (
     "Exit status: 0 done, also where the load fell or the specimen burst after its peak; 2 input refused, or a file "
-    "cannot be written; 3 the run became unstable; 130 stopped by Ctrl-C, 143 by SIGTERM (128 and the signal), go on "
+    "cannot be written; 3 the run became unstable; 130 stopped by Ctrl-C, 143 by SIGTERM, 129 by SIGHUP, go on "
     "with --resume."
 )
 
