@@ -20,6 +20,7 @@ from rsmpm_ti.bench.workers import Runner, simulation
 from rsmpm_ti.mpm.passes import Pass, g2p, p2g
 
 real, _ = start_taichi("f64", "cpu", int(sys.argv[1]))
+ti.lang.impl.current_cfg().print_kernel_llvm_ir_optimized = True
 sim = simulation(Runner("solver", "bspline", dx=4e-3), real).sim
 p2g(sim, Pass(momentum=True, force=True), 0.0, sim.traversal.ticket())
 g2p(sim, Pass(velocity=True, position=True), 0.0, 0.0, sim.traversal.ticket())
@@ -40,7 +41,7 @@ def vector_arithmetic(ir: str) -> int:
 @pytest.mark.parametrize("threads", [1, 2])
 def test_loops_over_a_run_have_vector_instructions(tmp_path, threads):
     """A branch, an atomic or a field touched first in a loop leaves nothing but single numbers, or a few pairs."""
-    switches = {"TI_PRINT_KERNEL_LLVM_IR_OPTIMIZED": "1", "TI_OFFLINE_CACHE": "0", "PYTHONPATH": str(ROOT)}
+    switches = {"TI_OFFLINE_CACHE": "0", "PYTHONPATH": str(ROOT)}
     subprocess.run(
         [sys.executable, "-c", CHILD, str(threads)],
         cwd=tmp_path, env=os.environ | switches, check=True, timeout=300, stdout=subprocess.DEVNULL,

@@ -75,8 +75,8 @@ MUTATIONS = {
         [
             (
                 "fields/state.py",
-                "-self.confinement * np.ones((len(x), 3))",
-                "-self.confinement * np.array([[1.0, 1.0, 0.0]] * len(x))",
+                "-pressure * np.ones((len(x), 3))",
+                "-pressure * np.array([[1.0, 1.0, 0.0]] * len(x))",
             )
         ],
         "triaxial",
@@ -88,7 +88,7 @@ MUTATIONS = {
     "platens that stay where they were": (
         [
             (
-                "fields/grid.py",
+                "fields/geometry.py",
                 "        self.followed = tuple(d for d in range(dim) if ",
                 "        self.followed = tuple(d for d in () if ",
             )
