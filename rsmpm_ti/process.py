@@ -4,6 +4,7 @@ import contextlib
 import errno
 import functools
 import os
+import signal
 import subprocess
 import sys
 from collections.abc import Callable, Iterator
@@ -60,8 +61,8 @@ def command(main: Callable[Arguments, int]) -> Callable[Arguments, int]:
     """Decorator of a command's main, which gives its exit status: it may have streams that are closed, full or ASCII.
 
     Closed ones are opened to nowhere, or a file of the run would get their number and all that is printed. A letter
-    that cannot be printed is escaped. Output that cannot be written does not end what the command does; its status is
-    then 2, after a line. That its reader has gone, as `head` does, is no failure.
+    that cannot be printed is escaped. Ctrl-C is a line and a status. Output that cannot be written does not end what
+    the command does; its status is then 2, after a line. That its reader has gone, as `head` does, is no failure.
     """
 
     @functools.wraps(main)
@@ -73,6 +74,9 @@ def command(main: Callable[Arguments, int]) -> Callable[Arguments, int]:
         with _as_stdout(output):
             try:
                 status = main(*arguments, **keywords)
+            except KeyboardInterrupt:
+                tell("rsmpm_ti: stopped by Ctrl-C; what is complete is kept")
+                status = 128 + signal.SIGINT
             except SystemExit:  # --help, or an option that there is not
                 if output.complete():
                     raise

@@ -3,7 +3,6 @@
 import argparse
 import math
 import os
-import signal
 import sys
 import warnings
 from dataclasses import replace
@@ -198,9 +197,6 @@ def main(arguments: list[str] | None = None) -> int:
     except (MemoryError, OSError) as error:  # no memory, descriptors or disk to begin with
         tell(f"rsmpm_ti: cannot be run: {reason(error)}")
         return 2
-    except KeyboardInterrupt:
-        tell("rsmpm_ti: stopped by Ctrl-C; what is complete is kept")
-        return 128 + signal.SIGINT
 
 
 def folder(options: argparse.Namespace) -> Path:

@@ -99,8 +99,8 @@ SUMMARY = Table(
         _key("dropped_energy_J", "J", "their kinetic and elastic energy"),
         _key("stopped", "", "why the run ended before the end of its schedule; empty where it did not"),
         _key(
-            "complete", "", "whether the run came to its end and every file of it is written; false or no "
-            "file while a run is under way",
+            "complete", "", "whether the run came to its end and every file of it is there; false or no file while a "
+            "run is under way, and where frames or particle files were lost before --resume",
         ),
         _key("warnings", "", "list of sentences: what the numbers must not be taken for, and what went wrong beside"),
     ),

@@ -31,13 +31,15 @@ def finish(run, stopped: str, failure: Exception | None) -> tuple[Result, SceneE
     fracture = end.attempt(measure_fracture, *end.broken, what="what broke cannot be measured")
     if run.folder is not None:
         end.write_rest(fracture)
-    summary = end.sum_up(fracture, run.over and failure is None and end.attempt.problem is None)
+    well = run.over and failure is None and end.attempt.problem is None
+    summary = end.sum_up(fracture, complete=well and not run.lost)
     if run.folder is not None and summary.get("complete"):
         run.folder.complete()
-    view = end.view
+    view, given_up = end.view, run.writer.problem if run.writer is not None and run.interrupt.hurried else ""
     result = Result(
         history=view.history, summary=summary, events=view.events, fracture=fracture, snapshot=view.snapshot,
-        out=run.out, stopped=stopped, signal=0 if run.over else run.interrupt.signal, reactions=end.reactions,
+        out=run.out, stopped=stopped or given_up, reactions=end.reactions,
+        signal=0 if run.over and not given_up else run.interrupt.signal,
     )  # fmt: skip
     return result, end.attempt.problem
 
@@ -65,7 +67,7 @@ class End:
             self._arrays = attempt(self.run.checkpoint_arrays)
         if self._arrays is not None:
             attempt(self._timed, writer.checkpoint, self._arrays)
-        self.sum_up(None, False)
+        self.sum_up(None, complete=False)
 
     def write_rest(self, fracture: Fracture | None) -> None:
         """What is measured and painted, while the checkpoint is on its way to the disk."""
@@ -101,7 +103,7 @@ class End:
         finally:
             self.run.painting_s += time.perf_counter() - start
 
-    def sum_up(self, fracture: Fracture | None, complete: bool) -> dict:
+    def sum_up(self, fracture: Fracture | None, *, complete: bool) -> dict:
         """The numbers of the run, the same in Python as in the file; none where they could not be had."""
 
         def numbers() -> dict:

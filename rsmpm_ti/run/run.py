@@ -124,6 +124,7 @@ class Run:
         self.scene, self.folder, self.settings, self.interrupt = scene, folder, settings, interrupt
         self.said, self.out = list(said), folder.path if folder is not None else None
         self.writer: Any = None  # an output.writer.Writer where files are written, imported only then: it needs Taichi
+        self.lost: list[str] = []  # files of the run before it went on, which cannot be made again
         self.begun = time.perf_counter()
         if folder is not None:  # first, since it gets ready while kernels compile here
             from rsmpm_ti.output.pictures import commission
@@ -144,10 +145,10 @@ class Run:
         self.writer.ready()
         folder.begin(goes_on=self.resumed)
         if self.resumed:
-            lost = [name for files in self.files for name in files.go_on(self.view())]
-            if lost:
+            self.lost = [name for files in self.files for name in files.go_on(self.view())]
+            if self.lost:
                 self.said.append(
-                    f"{named(lost)} of the part before --resume were missing or damaged, and cannot be made again"
+                    f"{named(self.lost)} of the part before --resume were missing or damaged, and cannot be made again"
                 )
 
     def _set_up(self, seeds, kept) -> None:

@@ -80,7 +80,7 @@ def test_frames_and_particle_files_that_are_lost_are_named_and_the_run_goes_on_w
     said = capsys.readouterr().out
     assert f"warning: {lost}" in said
     summary = json.loads((out / "summary.json").read_text())
-    assert summary["complete"] is True and summary["warnings"][-1].startswith(lost)
+    assert summary["complete"] is False and summary["warnings"][-1].startswith(lost)
     assert "particles_0001" not in (out / "particles.pvd").read_text()
     assert sum(1 for _ in imageio.imiter(out / "intact.mp4", plugin="FFMPEG")) == 2
     left = contents(out)
