@@ -20,13 +20,14 @@ def scene(
         elasticity=Hooke(E=17.0 * GPa, nu=0.14),
         criterion=MohrCoulomb(cohesion=5.95 * MPa, friction_angle=40.0, tensile_strength=2.0 * MPa),
     )
-    flaw = ()
+    flaws, what = (), "without a flaw"
     if flaw_length > 0.0:
-        flaw = (Slit(centre=(50.0 * mm, 50.0 * mm), length=flaw_length, width=flaw_width, angle=flaw_angle),)
+        what = "with a central flaw"
+        flaws = (Slit(centre=(50.0 * mm, 50.0 * mm), length=flaw_length, width=flaw_width, angle=flaw_angle),)
     return brazilian_test(
-        title="Brazilian disc with a central flaw",
+        title=f"Brazilian disc {what}",
         rock=rock,
-        flaws=flaw,
+        flaws=flaws,
         seeding=Jittered(amount=0.1),
         arc=arc,
         dx=dx,

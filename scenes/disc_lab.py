@@ -16,11 +16,14 @@ def scene(
     strain_end: float = 3.0e-4,
     time_scale: float | str = 16.0,
 ) -> Scene:
-    flaw = Slit(centre=(50.0 * mm, 50.0 * mm), length=flaw_length, width=flaw_width, angle=flaw_angle, rounded=True)
+    flaws, what = (), "without a flaw"
+    if flaw_length > 0.0:
+        centre, what = (50.0 * mm, 50.0 * mm), "with an inclined flaw"
+        flaws = (Slit(centre=centre, length=flaw_length, width=flaw_width, angle=flaw_angle, rounded=True),)
     return brazilian_test(
-        title="Brazilian disc with an inclined flaw: directional cracks and fracture energy",
+        title=f"Brazilian disc {what}: directional cracks and fracture energy",
         rock=lab_rock(),
-        flaws=(flaw,),
+        flaws=flaws,
         seeding=Jittered(seed=seed, fitted=True),
         arc=arc,
         dx=dx,

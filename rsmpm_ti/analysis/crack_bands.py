@@ -51,6 +51,11 @@ class Course:
     width: float
 
 
+ZONE, CELLS = 0.25, 6.0
+"""A band wider than this fraction of its length, and than so many spacings, is a zone in which all has failed: a block
+that gave way everywhere, or rubble. The line through it would be that of its own shape."""
+
+
 @dataclass(frozen=True, kw_only=True)
 class Crack:
     """One connected band of failed particles."""
@@ -64,7 +69,7 @@ class Crack:
     origin: Origin
     length_at: np.ndarray  # furthest distance from the origin at each of its events [m], [m]
     speed_at: np.ndarray  # tip speed at each of its events [m/s of the run's time], [m]
-    course: Course | None  # None in 3D
+    course: Course | None  # None in 3D, and of a zone
 
 
 def find_bands(events, spacing: float) -> tuple[list[np.ndarray], csr_array]:
@@ -95,14 +100,7 @@ def _measure(events, band, graph, tips, spacing, time_scale) -> Crack:
     released = events.released[band]
     length = growth(time, distances(graph, 0))
     particles = len(np.unique(events.id[band]))
-    course = None
-    if x.shape[1] == 2:
-        path = centre_path(x, graph, spacing)
-        whole = path_length(path)
-        course = Course(
-            path=path, length=whole, tortuosity=tortuosity(path), direction=mean_direction(path),
-            width=particles * spacing**2 / whole,
-        )  # fmt: skip
+    course = course_of(x, particles, graph, spacing) if x.shape[1] == 2 else None
     near = int(nearest_tip(x[:1], tips)[0])
     angle = first_angle(events, band, tips[near]) if near >= 0 else np.nan
     return Crack(
@@ -121,6 +119,16 @@ def _measure(events, band, graph, tips, spacing, time_scale) -> Crack:
     )
 
 
+def course_of(x: np.ndarray, particles: int, graph, spacing: float) -> Course | None:
+    """The line of a band in 2D, None of a zone; x: places of its failures [n, 2] [m], graph: which of them are near."""
+    path = centre_path(x, graph, spacing)
+    whole = path_length(path)
+    width = particles * spacing**2 / whole
+    if width > max(ZONE * whole, CELLS * spacing):
+        return None
+    return Course(path=path, length=whole, tortuosity=tortuosity(path), direction=mean_direction(path), width=width)
+
+
 def carried(
     paths: list[np.ndarray], bands: list[np.ndarray], events, pattern: Snapshot | Pattern, spacing: float
 ) -> list[np.ndarray]:
@@ -131,7 +139,7 @@ def carried(
     """
     x = pattern.x[:, :2]
     moved = []
-    for path, band in zip(paths, bands, strict=False):  # in 3D there are no paths
+    for path, band in zip(paths, bands, strict=True):
         kept = band[np.isin(events.id[band], pattern.id)]
         way = x[np.searchsorted(pattern.id, events.id[kept])] - events.x[kept]
         kept, way = kept[np.isfinite(way).all(axis=1)], way[np.isfinite(way).all(axis=1)]
@@ -148,14 +156,16 @@ def openings(cracks: list[Crack], events, snapshot: Snapshot, dx: float) -> list
     """Opening and slip at each point of each crack's path at the snapshot, list of [k, 2] [m] (`crack_opening.jumps`).
 
     Paths are places at failure, so they are first taken back to where their particles were seeded, as the intact
-    particles are, by those of them that have not left the domain; NaN where all have.
+    particles are, by those of them that have not left the domain; NaN where all have. No points of a zone.
     """
     whole = (snapshot.failure_mode == INTACT) & np.isfinite(snapshot.x).all(axis=1)
     displacement = snapshot.displacement[whole]
     intact = cKDTree(snapshot.x[whole] - displacement)
     found = []
     for crack in cracks:
-        assert crack.course is not None  # in 2D
+        if crack.course is None:
+            found.append(np.zeros((0, 2)))
+            continue
         x, ids = events.x[crack.events], events.id[crack.events]
         kept = np.isin(ids, snapshot.id)
         if not kept.any():

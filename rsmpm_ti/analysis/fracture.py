@@ -5,8 +5,16 @@ from dataclasses import dataclass
 import numpy as np
 
 from rsmpm_ti.analysis.acoustic_emission import BValue, Catalogue, b_value, gather
-from rsmpm_ti.analysis.crack_bands import Crack, carried, find_bands, measure_cracks, openings
-from rsmpm_ti.analysis.crack_path import centre_path, rayleigh_speed
+from rsmpm_ti.analysis.crack_bands import (
+    Course,
+    Crack,
+    carried,
+    course_of,
+    find_bands,
+    measure_cracks,
+    openings,
+)
+from rsmpm_ti.analysis.crack_path import rayleigh_speed
 from rsmpm_ti.analysis.flaw_tips import FlawTip, flaw_tips, initiations
 from rsmpm_ti.analysis.fragments import Fragments, find_fragments
 from rsmpm_ti.analysis.numerical_fracture import parting_warning
@@ -56,8 +64,16 @@ def crack_lines(scene: Scene, events: EventTable, pattern: Snapshot | Pattern) -
         return []
     spacing, events = spacing_of(scene), events.until(pattern.time)
     bands, graph = find_bands(events, spacing)
-    paths = [centre_path(events.x[band], graph[band][:, band], spacing) for band in bands]
-    return carried(paths, bands, events, pattern, spacing)
+    courses = [
+        course_of(events.x[band], len(np.unique(events.id[band])), graph[band][:, band], spacing) for band in bands
+    ]
+    return _lines(courses, bands, events, pattern, spacing)
+
+
+def _lines(courses: list[Course | None], bands, events: EventTable, pattern, spacing: float) -> list[np.ndarray]:
+    """Of those bands that have one."""
+    known = [(course.path, band) for course, band in zip(courses, bands, strict=True) if course is not None]
+    return carried([path for path, _ in known], [band for _, band in known], events, pattern, spacing)
 
 
 def spacing_of(scene: Scene) -> float:
@@ -87,7 +103,7 @@ def measure_fracture(scene: Scene, history: np.ndarray, events: EventTable, snap
         b=b_value(acoustic.magnitude),
         rayleigh_speed=rayleigh_speed(shear_speed, scene.wave_speed),
         dim=scene.dim,
-        lines=carried([c.course.path for c in cracks if c.course is not None], bands, events, snapshot, spacing),
+        lines=_lines([crack.course for crack in cracks], bands, events, snapshot, spacing),
         time_scale=scene.time_scale,
         warning=parting_warning(scene, snapshot),
     )

@@ -36,7 +36,7 @@ class FilteredLoad:
     """
 
     def __init__(self, scene: Scene):
-        self._rows, self._pressure = filter_rows(scene), scene.loading.confinement
+        self._rows, self.pressure = filter_rows(scene), scene.loading.confinement
         self._stress: deque[float] = deque(maxlen=self._rows)
         self._strain: deque[float] = deque(maxlen=self._rows)
         self.largest, self.now, self.least_since = 0.0, 0.0, 0.0  # sizes [Pa]
@@ -49,7 +49,7 @@ class FilteredLoad:
         if len(self._stress) < self._rows or not np.isfinite(self._stress).all():
             return
         median = float(np.median(self._stress))
-        self.now = abs(median - self._pressure)
+        self.now = abs(median - self.pressure)
         self.least_since = min(self.least_since, self.now)
         if self.now > self.largest:
             self.largest = self.least_since = self.now

@@ -57,7 +57,8 @@ SUMMARY = Table(
             "transit from platen to platen, at least three rows; what one row alone shows is no part of it",
         ),
         _key("peak_filtered_strain", "1", "nominal strain there"),
-        _key("energy_balance_error", "1", "largest residual of kinetic + elastic + dissipated - work, over the work"),
+        _key("energy_balance_error", "1", "largest residual of kinetic + elastic + dissipated - work, over the work "
+             "and the energy at the start"),
         _key("energy_balance_error_elastic", "1", "the same up to onset"),
         _key(
             "kinetic_share_after", "1", "after first failure: largest kinetic energy over the largest elastic energy "

@@ -29,7 +29,8 @@ def fallen(load: FilteredLoad, view: View, drop: float | None) -> str:
     failures = view.survey.failed_tension + view.survey.failed_shear
     if drop is None or not failures or not load.fraction < 1.0 - drop:
         return ""
-    return f"stopped: the load fell to {load.fraction:.2g} of its peak of {_peak(load)}, at {_now(view)}"
+    less = f", both less the confining pressure of {load.pressure / 1e6:g} MPa" if load.pressure else ""
+    return f"stopped: the load fell to {load.fraction:.2g} of its peak of {_peak(load)}{less}, at {_now(view)}"
 
 
 def squeezed(view: View) -> str:
@@ -50,15 +51,20 @@ def squeezed(view: View) -> str:
 def burst(load: FilteredLoad, view: View, books: EnergyBooks, error: BrokenApart) -> str:
     """Why the run ends here if its specimen has burst, else "": then its numbers have.
 
-    It has where rock has failed in numbers, the load fell from a peak, and the energy of it all is accounted for.
+    It has where rock has failed in numbers, the load fell from a peak, and the energy of it all is accounted for. A
+    load that a force holds does not fall.
     """
     failures = view.survey.failed_tension + view.survey.failed_shear
     fraction, created = failures / view.sim.particles.count, books.created / max(books.turnover, 1e-300)
-    if fraction < BURST_FAILURES or not load.fraction < BURST_LOAD or not created <= BURST_CREATED:
+    held = bool(view.sim.grid.held)
+    if fraction < BURST_FAILURES or not (held or load.fraction < BURST_LOAD) or not created <= BURST_CREATED:
         return ""
     what = str(error).partition("; likely cause")[0]
+    fell = f"after the peak of {_peak(load)}; the load had fallen to {load.fraction:.2g} of it"
+    if held:
+        fell = f"under a held force, {_peak(load)}"
     return (
-        f"burst: {what}, after the peak of {_peak(load)}; the load had fallen to {load.fraction:.2g} of it, with "
+        f"burst: {what}, {fell}, with "
         f"{failures} failures of {view.sim.particles.count} particles, and {100.0 * max(0.0, created):.2g} % of the "
         f"energy came from nowhere; for more of the flight take domain.outside = drop or a larger domain"
     )

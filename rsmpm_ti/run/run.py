@@ -79,6 +79,7 @@ def simulate(
             damaged: list[str] = []
             if resume:
                 kept = _kept(folder, scene, seeds, settings, damaged)
+                said += [f"{name} was damaged; the run went on from the checkpoint before it" for name in damaged]
             run = Run(scene, seeds, folder, settings, interrupt, kept, said)
             folder.remove(damaged)  # else the next checkpoint would set it aside, in the place of the good one
             return run.go()
@@ -94,6 +95,8 @@ def _kept(folder: RunFolder, scene: Scene, seeds, settings: Settings, damaged: l
     kept = read(folder.path, scene, seeds, settings, damaged)
     if kept is None:
         folder.start_anew()
+        said = f"there is no checkpoint in {folder.path} to go on from: the run starts anew"
+        warnings.warn(said, RockWarning, stacklevel=4)
     else:
         check_end(kept, scene)
     return kept

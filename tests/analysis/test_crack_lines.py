@@ -7,7 +7,7 @@ import pytest
 from broken_bands import SPACING, failures, snapshot, strip
 
 from rsmpm_ti import load_scene
-from rsmpm_ti.analysis.crack_bands import carried, find_bands
+from rsmpm_ti.analysis.crack_bands import carried, course_of, find_bands
 from rsmpm_ti.analysis.crack_path import centre_path, path_length
 from rsmpm_ti.analysis.fracture import crack_lines
 from rsmpm_ti.records.events import EventTable
@@ -38,3 +38,15 @@ def test_lines_at_the_largest_load_are_those_of_the_failures_until_then():
     (line,) = crack_lines(scene, events, last)
     # the centres of bands along the same line, half as long
     assert path_length(line) == pytest.approx(5e-3, abs=2.0 * SPACING)
+
+
+def test_a_block_that_failed_everywhere_has_no_line():
+    """Its line would be its own diagonal, which passes for a shear band: atan 2 = 63 degrees in a specimen."""
+    columns, rows = np.meshgrid(np.arange(25), np.arange(50))
+    x = SPACING * np.stack([columns.ravel(), rows.ravel()], axis=1)
+    bands, graph = find_bands(failures(x), SPACING)
+    assert len(bands) == 1 and course_of(x[bands[0]], len(x), graph[bands[0]][:, bands[0]], SPACING) is None
+    thin = strip(63.0, 20e-3, 4.0)
+    bands, graph = find_bands(failures(thin), SPACING)
+    course = course_of(thin[bands[0]], len(thin), graph[bands[0]][:, bands[0]], SPACING)
+    assert course is not None and course.direction == pytest.approx(63.0, abs=3.0)

@@ -62,9 +62,9 @@ def test_specimen_that_bursts_after_its_peak_is_a_result(tmp_path, capsys):
     assert not list(tmp_path.glob("checkpoint*.npz")), "a state that cannot be followed is no state to go on from"
 
 
-def looked(failures: int = 100, strain: float = 1e-3) -> SimpleNamespace:
+def looked(failures: int = 100, strain: float = 1e-3, held: tuple = ()) -> SimpleNamespace:
     survey = SimpleNamespace(failed_tension=failures, failed_shear=0)
-    sim = SimpleNamespace(particles=SimpleNamespace(count=1000))
+    sim = SimpleNamespace(particles=SimpleNamespace(count=1000), grid=SimpleNamespace(held=held))
     return SimpleNamespace(survey=survey, sim=sim, step=10, time=1e-3, strain=strain)
 
 
@@ -83,6 +83,12 @@ def test_burst_is_told_with_its_peak():
     said = burst(load(0.1), looked(), BOOKS, FLOWN)
     assert said.startswith("burst: 3 particles have left the domain at step 10, after the peak of 4")
     assert "fallen to 0.1 of it, with 100 failures of 1000 particles" in said and "likely cause" not in said
+
+
+def test_burst_under_a_held_force_whose_load_cannot_fall():
+    said = burst(load(0.9), looked(held=("upper",)), BOOKS, FLOWN)
+    assert said.startswith("burst: 3 particles have left the domain at step 10, under a held force, 4")
+    assert burst(load(0.9), looked(3, held=("upper",)), BOOKS, FLOWN) == "", "hardly broken"
 
 
 @pytest.mark.parametrize(
@@ -107,6 +113,9 @@ def test_load_that_falls_before_anything_fails_ends_nothing():
     assert fallen(load(0.1), looked(failures=0), 0.5) == ""
     assert fallen(load(0.1), looked(), None) == "" and fallen(load(0.6), looked(), 0.5) == ""
     assert "to 0.1 of its peak of 4" in fallen(load(0.1), looked(), 0.5)
+    pressed = load(0.1)
+    pressed.pressure = 20e6
+    assert ", both less the confining pressure of 20 MPa, at step" in fallen(pressed, looked(), 0.5)
 
 
 def test_stop_after_drop_needs_a_load_and_a_fraction():

@@ -15,7 +15,8 @@ from rsmpm_ti.spec.scene import Body
 
 QUIET = {
     "platen_imbalance": 0.001, "kinetic_share_after": None, "first_failure_time_s": None,
-    "peak_filtered_strain": None, "numerical_fracture": None,
+    "peak_filtered_strain": None, "numerical_fracture": None, "peak_filtered_Pa": None,
+    "largest_stress_Pa": None,
 }  # fmt: skip
 
 
@@ -61,6 +62,13 @@ def test_imbalance_and_numerical_fracture_and_what_has_no_imbalance():
     assert sentences(numbers=QUIET | {"numerical_fracture": "parted"}) == ["parted"]
 
 
+def test_two_peaks_that_differ_are_said():
+    peaks = QUIET | {"peak_filtered_Pa": 153e6, "largest_stress_Pa": 160e6}
+    (said,) = sentences(numbers=peaks)
+    assert "153 MPa, is 4.4 % below that of one row, 160 MPa: the strength lies between" in said
+    assert sentences(numbers=peaks | {"peak_filtered_Pa": 159e6}) == []
+
+
 def test_motion_after_failure_is_held_against_what_was_stored():
     history = curve([0.0, 0.9, 0.01, 0.05, 0.3, 0.4, 0.2])
     assert kinetic_share_after(history, 2.5) == pytest.approx(0.2) and kinetic_share_after(history, None) is None
@@ -91,5 +99,5 @@ def test_disc_that_does_not_break_from_its_middle(x, y, beside):
     disc = Disc(centre=(0.05, 0.05), radius=0.05)
     scene = replace(scene, bodies=(Body(region=disc),))
     said = sentences(scene, events=failed_at(1e-3 * x, 1e-3 * y))
-    assert bool(said) is beside and all("the number is not a strength" in sentence for sentence in said)
+    assert bool(said) is beside and all("neither its load nor the peak is a strength" in sentence for sentence in said)
     assert sentences(load_scene("disc", quick=True), events=failed_at(0.05, 0.02)) == [], "a flaw says where it breaks"

@@ -5,11 +5,14 @@ import re
 from dataclasses import replace
 
 import pytest
+from small_scene import make
 
 from rsmpm_ti import Box, Difference, Directional, GPa, Hooke, LinearSoftening, MohrCoulomb, MPa, Rock, Slit, load_scene
 from rsmpm_ti.errors import SceneError
 from rsmpm_ti.rock.presets import lab_rock
+from rsmpm_ti.spec.ground.in_situ import InSitu
 from rsmpm_ti.spec.library.places import available
+from rsmpm_ti.spec.loading_start import AtRest
 from rsmpm_ti.spec.review.plausible import LEAST_ROWS, RANGES, implausible
 from rsmpm_ti.spec.scene import LEAST_ROWS as FEWEST_ROWS
 from rsmpm_ti.spec.scene import ROW_STEPS
@@ -163,10 +166,12 @@ def test_a_rate_that_no_quasi_static_test_has():
     assert line.startswith("the strain rate of 16 1/s (with time_scale = 16) is that of a dynamic test")
 
 
-def test_run_that_ends_before_anything_fails_is_no_test_that_is_too_fast():
+def test_run_that_ends_before_anything_fails_is_told_so_and_is_no_test_that_is_too_fast():
     scene = load_scene("cube", quick=True)
     short = replace(scene, schedule=replace(scene.schedule, strain_end=1e-6, rows=5))
-    assert implausible(short) == [] and implausible(scene.elastic()) == []
+    (line,) = implausible(short)
+    assert "the first failure is expected at a strain of" in line and line.endswith("raise schedule.strain_end")
+    assert implausible(short.elastic()) == []
 
 
 def test_rows_too_coarse_for_the_first_failure():
@@ -207,3 +212,14 @@ def test_rows_are_no_finer_than_the_steps_bear(steps):
     assert rows <= 1100.0
     asked = replace(scene, schedule=replace(scene.schedule, rows=max(1, scene.steps)))
     assert asked.row_steps == 1
+
+
+def test_overburden_that_nothing_holds_is_said():
+    ground = InSitu(axis=1, surface=0.1, overburden=2e6, K0=0.3)
+    floor, _ = make().loading.boundaries
+    still = {"loading_start": AtRest(), "loading_initial_stress": ground, "schedule": {"t_end": 1e-5}}
+    scene = make(loading_boundaries=(floor,), **still)
+    (line,) = [said for said in implausible(scene) if "overburden" in said]
+    assert "= 2 MPa presses at the start and nothing does afterwards" in line
+    held = make(**still)
+    assert not [said for said in implausible(held) if "overburden" in said]

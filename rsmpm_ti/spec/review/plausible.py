@@ -6,7 +6,7 @@ to look like that unit; `blamed` adds such a cause to a refusal that comes of it
 
 import dataclasses
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from rsmpm_ti.errors import SceneError
 from rsmpm_ti.spec.mass_scaling import estimate
@@ -67,6 +67,9 @@ DYNAMIC_RATE = 10.0
 """Strain rate, times time_scale, from which on tests are dynamic [1/s]: Zhang & Zhao (2014), Rock Mech. Rock Eng.
 47:1411. A wave crosses a specimen of 10 cm once while it strains by 3e-4. It is for scenes without an estimate."""
 
+FAR = 100.0
+"""Times the end of a run, within which the failure that it misses is looked for."""
+
 LEAST_ROWS = 10
 """Rows of the history up to the first failure that is expected: each then holds a tenth of the load, and the modulus is
 a line through seven of them."""
@@ -78,7 +81,7 @@ WHOLE_ANGLE, NEAR = 5.0, 0.15
 def implausible(scene) -> list[str]:
     """All of it."""
     rock = [said for path, value, known in _known(scene.rock) if (said := _outside(path, value, known))]
-    return [*rock, *_ratios_said(scene.rock), *_geometry_said(scene), *_loading_said(scene)]
+    return [*rock, *_ratios_said(scene.rock), *_geometry_said(scene), *_loading_said(scene), *_overburden_said(scene)]
 
 
 def _known(rock) -> list[tuple[str, float, Range]]:
@@ -168,6 +171,37 @@ def _ratios_said(rock) -> list[str]:
     return said
 
 
+def _overburden_said(scene) -> list[str]:
+    """The rock above that presses at the start, and nothing that goes on pressing."""
+    ground = scene.loading.initial_stress
+    if ground is None or ground.overburden <= 0.0:
+        return []
+    held = {boundary.side for boundary in scene.loading.boundaries if boundary.axis == ground.axis}
+    if len(held) == 2:
+        return []
+    return [
+        f"loading.initial_stress.overburden = {ground.overburden / 1e6:g} MPa presses at the start and nothing does "
+        f"afterwards: the free side springs up; give it a platen of the same stress, or a wall"
+    ]
+
+
+def _ends_before_failure(scene) -> list[str]:
+    """A test of rock that may break, too short for it."""
+    if scene.schedule.strain_end is None or not getattr(scene.rock.criterion, "breaks", False):
+        return []
+    try:
+        later = estimate(replace(scene, schedule=replace(scene.schedule, strain_end=FAR * scene.schedule.strain_end)))
+    except (ValueError, AttributeError, ArithmeticError):
+        return []
+    end = abs(scene.schedule.strain_end)
+    if not end < later.strain < 0.999 * FAR * end:
+        return []
+    return [
+        f"the first failure is expected at a strain of {later.strain:.3g} ({later.stress / 1e6:.4g} MPa), and the run "
+        f"ends at {end:.3g}: raise schedule.strain_end"
+    ]
+
+
 def _loading_said(scene) -> list[str]:
     """Tests that are too fast, and histories that are too coarse."""
     loading = scene.loading
@@ -176,7 +210,8 @@ def _loading_said(scene) -> list[str]:
     try:
         expected = estimate(scene)
         inertia = expected.error(scene.time_scale)
-        breaks = expected.strain < 0.999 * expected.strain_rate * scene.t_end
+        reached = expected.strain_rate * scene.t_end
+        breaks = expected.strain < 0.999 * reached
     # not a test that it knows, or laws of a scene's own that lack what it asks for
     except (ValueError, AttributeError, ArithmeticError):
         breaks = False
@@ -184,7 +219,8 @@ def _loading_said(scene) -> list[str]:
         rate = abs(loading.strain_rate) * scene.time_scale
         slower = "lower the platens' speed or loading.time_scale"
         fast = f"the strain rate of {rate:.3g} 1/s (with time_scale = {scene.time_scale:g}) is that of a dynamic test"
-        return [f"{fast}, above {DYNAMIC_RATE:g} (Zhang & Zhao 2014); {slower}"] if rate > DYNAMIC_RATE else []
+        said = [f"{fast}, above {DYNAMIC_RATE:g} (Zhang & Zhao 2014); {slower}"] if rate > DYNAMIC_RATE else []
+        return [*said, *_ends_before_failure(scene)]
     said = []
     if inertia > MOST_INERTIA:
         said.append(
