@@ -11,6 +11,8 @@ from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import ParamSpec, TextIO
 
+from rsmpm_ti.errors import SceneError, reason
+
 START = """
 import importlib.util, sys
 sys.path[:], sys.pycache_prefix = {path}, {prefix}
@@ -24,11 +26,11 @@ def python_command(code: str, *arguments: str) -> list[str]:
     """Command of a Python that runs `code` and sees what this one sees: search path, flags, warnings, this package.
 
     `python -m`, or a folder in PYTHONPATH, would put the current folder or all installed packages before the standard
-    library: somebody's ./json.py would be run. So it starts alone (-I) and is told its path; an empty entry of that,
-    which means whatever folder is the current one, is left out.
+    library: somebody's ./json.py would be run. So it starts alone (-I) and is told its path; the current folder, by its
+    name or as an empty entry, is left out.
     """
     package = Path(__file__).resolve().parent
-    entries = [entry for entry in sys.path if isinstance(entry, str) and entry]
+    entries = [entry for entry in sys.path[_is_current() :] if isinstance(entry, str) and entry]
     path = [os.path.abspath(entry) if os.path.exists(entry) else entry for entry in entries]
     start = START.format(
         path=ascii(path),
@@ -38,6 +40,14 @@ def python_command(code: str, *arguments: str) -> list[str]:
     )
     flags = subprocess._args_from_interpreter_flags()  # type: ignore[attr-defined]  # as multiprocessing does
     return [sys.executable, *flags, "-I", "-X", f"utf8={sys.flags.utf8_mode}", "-c", start + code, *arguments]
+
+
+def _is_current() -> bool:
+    """Whether the search path begins with the current folder, as `python -m` makes it: with its whole name."""
+    try:
+        return bool(sys.path) and os.path.samefile(sys.path[0] or ".", ".")
+    except (OSError, ValueError, TypeError):
+        return False
 
 
 @contextlib.contextmanager
@@ -77,6 +87,9 @@ def command(main: Callable[Arguments, int]) -> Callable[Arguments, int]:
             except KeyboardInterrupt:
                 tell("rsmpm_ti: stopped by Ctrl-C; what is complete is kept")
                 status = 128 + signal.SIGINT
+            except (SceneError, OSError, MemoryError) as error:
+                tell(f"rsmpm_ti: {reason(error) if not isinstance(error, SceneError) else error}{_place(error)}")
+                status = 2
             except SystemExit:  # --help, or an option that there is not
                 if output.complete():
                     raise
@@ -84,6 +97,11 @@ def command(main: Callable[Arguments, int]) -> Callable[Arguments, int]:
         return status if output.complete() else 2
 
     return run
+
+
+def _place(error: BaseException) -> str:
+    name = getattr(error, "filename", None)
+    return f" ({name})" if name else ""
 
 
 class Output:

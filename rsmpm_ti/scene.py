@@ -7,9 +7,10 @@ import sys
 import warnings
 from dataclasses import replace
 from pathlib import Path
+from typing import TextIO, cast
 
 from rsmpm_ti.errors import RockWarning, SceneError, UnstableRun, reason, shown
-from rsmpm_ti.process import command, tell
+from rsmpm_ti.process import Output, command, tell
 from rsmpm_ti.spec.library.glance import glance
 from rsmpm_ti.spec.library.names import run_name
 from rsmpm_ti.spec.library.places import available, find, ships
@@ -217,7 +218,7 @@ def run(scene: Scene, options: argparse.Namespace) -> int:
     from rsmpm_ti.run.run import simulate
 
     name, out = run_name(options.scene), folder(options)
-    console = Console(stderr=True)
+    console = Console(file=cast(TextIO, Output(sys.stderr)))  # a terminal may be closed during the run
     console.quiet = not console.is_terminal  # else Rich 13.7 ends even a disabled bar by an empty line
     columns = (TextColumn("{task.description}"), BarColumn(), TimeElapsedColumn(), TimeRemainingColumn())
     with Progress(*columns, console=console, transient=True, disable=console.quiet) as bar:

@@ -10,7 +10,7 @@ from rsmpm_ti.bench.measures import Measure, measure
 from rsmpm_ti.bench.pareto import Entry, pareto, recommendations
 from rsmpm_ti.bench.sweep import CELLS, SHAPES, Setting, sweep
 from rsmpm_ti.process import no_current_folder
-from rsmpm_ti.records.files import write_csv
+from rsmpm_ti.records.files import complete, write_csv
 
 CSV_NAME, PICTURE_NAME = "speed_vs_error.csv", "speed_vs_error.png"
 NAMES = tuple(f.name for f in fields(Setting))
@@ -103,7 +103,8 @@ def draw(path: Path, entries: list[Entry]) -> None:
     keys += [Line2D([], [], marker="o", linestyle="", color="0.4", markerfacecolor="none", label="Apic (filled: FLIP)")]
     keys += [Line2D([], [], color="k", linewidth=1.0, label="Pareto front")]
     figure.legend(handles=keys, loc="outside lower center", ncols=len(keys))
-    figure.savefig(path)
+    with complete(path) as part:
+        figure.savefig(part)
 
 
 def error(cases: list[str], finest: bool, jobs: int | None, out: Path) -> str:

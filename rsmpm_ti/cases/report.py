@@ -4,7 +4,7 @@ import math
 from pathlib import Path
 
 from rsmpm_ti.cases.case import Outcome, Row
-from rsmpm_ti.records.files import write_csv
+from rsmpm_ti.records.files import complete, write_csv
 
 COLUMNS = ("case", "quantity", "reference", "got", "error", "tolerance", "verdict", "reason")
 
@@ -42,4 +42,5 @@ def draw(path: Path, outcome: Outcome) -> None:
     assert outcome.draw is not None
     figure = Figure(figsize=(9.0, 5.5), dpi=120, layout="constrained")
     outcome.draw(figure)
-    figure.savefig(path)
+    with complete(path) as part:
+        figure.savefig(part)

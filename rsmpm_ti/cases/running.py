@@ -1,9 +1,11 @@
 """Run cases: one in this process, or several at a time in processes of their own."""
 
+import contextlib
 import importlib
 import multiprocessing
 import time
 from collections.abc import Iterator
+from concurrent.futures import ThreadPoolExecutor, as_completed
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -50,5 +52,29 @@ def _work(task: tuple) -> Finished:
 
 def run_cases(catalogue: str, names: list[str], full: bool, out: Path, jobs: int, threads: int) -> Iterator[Finished]:
     """Each case in a process of its own, `jobs` at a time: Taichi's memory of one never meets the next."""
-    with no_current_folder(), multiprocessing.get_context("spawn").Pool(jobs, maxtasksperchild=1) as pool:
-        yield from pool.imap_unordered(_work, [(catalogue, name, full, out, threads) for name in names])
+    tasks = [(catalogue, name, full, out, threads) for name in names]
+    with no_current_folder(), ThreadPoolExecutor(jobs) as pool:
+        for done in as_completed([pool.submit(_alone, task) for task in tasks]):
+            yield done.result()
+
+
+def _alone(task: tuple) -> Finished:
+    """A task in a process of its own, which may be killed: a pool of `multiprocessing` would wait for it for ever."""
+    context, start = multiprocessing.get_context("spawn"), time.perf_counter()
+    receiver, sender = context.Pipe(duplex=False)
+    process = context.Process(target=_answer, args=(sender, task), daemon=True)
+    process.start()
+    sender.close()
+    try:
+        return receiver.recv()
+    except EOFError:
+        process.join()
+        said = f"its process ended with status {process.exitcode}"
+        return Finished(task[1], (), time.perf_counter() - start, said)
+    finally:
+        process.join()
+
+
+def _answer(sender, task: tuple) -> None:
+    with contextlib.suppress(KeyboardInterrupt):  # it is for the process that waits
+        sender.send(_work(task))

@@ -103,6 +103,8 @@ class RunFolder:
             self._place = os.stat(path)
             with tempfile.TemporaryFile(dir=path) as probe:  # an empty file is made on a full disk too
                 probe.write(record)
+            if is_folder(path / FRAMES):
+                tempfile.TemporaryFile(dir=path / FRAMES).close()  # files are moved out of it too
             self._manifest = manifest.read(path)
             self._names = set(self._manifest.names) if self._manifest else set()
             self._previous = previous_of(path)
@@ -124,6 +126,12 @@ class RunFolder:
         if self._all_aside:
             check_place(self._previous, None)
             return
+        if self._manifest is None and mode_of(part_of(self.path / manifest.FILE)):
+            raise SceneError(f"{part_of(self.path / manifest.FILE)} is in the way, no run has made it: {REMEDY}")
+        beside = os.stat(self.path.absolute().parent)
+        if self._manifest is not None and overwrite and beside.st_dev != self._place.st_dev:
+            remedy = "the run before is kept beside it, and files do not move between disks; give a folder in it"
+            raise refuse("out", str(self.path), "no disk of its own", remedy)
         if self._manifest is not None and not (overwrite or resume):
             remedy = "--overwrite (overwrite=True) replaces it, --resume goes on with it"
             raise refuse("out", str(self.path), "a folder without a run", remedy)

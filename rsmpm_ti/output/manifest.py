@@ -98,14 +98,21 @@ def write(folder: Path, manifest: Manifest) -> None:
 def append(folder: Path, names: Iterable[str]) -> None:
     """More names, on the disk on return."""
     lines = "".join(f"{name}\n" for name in names).encode("utf-8", "surrogateescape")
-    descriptor = os.open(folder / FILE, os.O_WRONLY | os.O_APPEND | getattr(os, "O_NOFOLLOW", 0))
-    size = os.fstat(descriptor).st_size
+    not_beyond = getattr(os, "O_NOFOLLOW", 0) | getattr(os, "O_NONBLOCK", 0)  # somebody may have put a pipe there
+    descriptor = os.open(folder / FILE, os.O_RDWR | os.O_APPEND | not_beyond)
+    found = os.fstat(descriptor)
+    size = found.st_size
     try:
+        head = os.pread(descriptor, len(HEAD), 0) if stat.S_ISREG(found.st_mode) else b""
+        if head != HEAD.encode():
+            size = -1
+            raise OSError(errno.EIO, "it is no list of a run any more", str(folder / FILE))
         if os.write(descriptor, lines) < len(lines):
             raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC), str(folder / FILE))
         os.fsync(descriptor)
     except OSError:
-        os.ftruncate(descriptor, size)  # half a name would make no list of it
+        if size >= 0:
+            os.ftruncate(descriptor, size)  # half a name would make no list of it
         raise
     finally:
         os.close(descriptor)

@@ -64,7 +64,7 @@ class Writer:
             self._child = subprocess.Popen(
                 python_command(CHILD),
                 stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=self._errors,
-                cwd=wanted.out,  # libraries read settings in the current folder, which may be gone besides
+                cwd=os.path.abspath(os.sep),  # libraries read settings in the current folder, which may be gone besides
                 start_new_session=True,  # Ctrl-C is for the solver, which then says what is still to be written
                 pass_fds=folder.lock.passed,
             )  # fmt: skip
@@ -74,10 +74,14 @@ class Writer:
         self._ready = False
         self._heard = time.monotonic()
         self._listener = threading.Thread(target=self._listen, daemon=True)
-        self._listener.start()
         self._sender = ThreadPoolExecutor(max_workers=1)
         self._pending: list[tuple[int, Future]] = []  # bytes of each order on its way
-        self._order("open", wanted)
+        try:
+            self._listener.start()
+            self._order("open", wanted)
+        except RuntimeError as error:  # no more threads or processes are allowed
+            self.abandon()
+            raise SceneError(f"the process that paints and writes cannot be used: {error}") from None
 
     def ready(self) -> None:
         """Wait until the child is up. Raises as `check`."""
@@ -145,7 +149,10 @@ class Writer:
         message = pickle.dumps(order, protocol=5)
         self._wait(lambda: self._on_the_way() + len(message) <= WAITING_BYTES or not self._pending)
         if not self.problem:
-            self._pending.append((len(message), self._sender.submit(self._send, message)))
+            try:
+                self._pending.append((len(message), self._sender.submit(self._send, message)))
+            except RuntimeError as error:  # this process is ending: a run in a thread beside it
+                self._give_up(f"nothing can be handed to the process that paints and writes: {error}")
 
     def _send(self, message: bytes) -> None:
         assert self._child.stdin is not None

@@ -1,6 +1,7 @@
 """The process that paints and writes what a solver orders by standard input; see writer.py, which starts it."""
 
 import contextlib
+import errno
 import json
 import os
 import pickle
@@ -13,6 +14,7 @@ from typing import Any
 
 from rsmpm_ti.backend.start import start_taichi
 from rsmpm_ti.output.files import COLLECTION, write_checkpoint, write_pvd, write_vtu
+from rsmpm_ti.output.manifest import FRAMES
 from rsmpm_ti.output.writer import ALIVE, READY, REPORT
 
 NICENESS = 10
@@ -32,6 +34,7 @@ class Desk:
     def __init__(self):
         self.gallery: Any = None  # until the order to open has come
         self._files, self._pending = ThreadPoolExecutor(max_workers=1), []
+        self._places: dict = {}  # folders by name, when they were first written into
 
     def open(self, wanted) -> None:
         from rsmpm_ti.output.gallery import Gallery
@@ -59,7 +62,7 @@ class Desk:
 
     def close(self, *last) -> None:
         self._settle(0)
-        self.gallery.close(*last)
+        self._here(self.gallery.close, *last)
 
     def stop(self) -> None:
         """Drop what waits: after a problem, nothing may be written that comes after a gap."""
@@ -67,7 +70,15 @@ class Desk:
 
     def _later(self, work, *arguments) -> None:
         self._settle(WAITING - 1)
-        self._pending.append(self._files.submit(work, *arguments))
+        self._pending.append(self._files.submit(self._here, work, *arguments))
+
+    def _here(self, work, *arguments) -> None:
+        """Nothing is written into what has taken the place of the run's folder."""
+        for folder in (self.out, self.out / FRAMES):
+            found = os.lstat(folder)
+            if self._places.setdefault(folder, (found.st_dev, found.st_ino)) != (found.st_dev, found.st_ino):
+                raise OSError(errno.ESTALE, "it was moved, removed or replaced during the run", str(folder))
+        work(*arguments)
 
     def _settle(self, most: int) -> None:
         while len(self._pending) > most:

@@ -79,8 +79,11 @@ class Encoder:
             self._pipe.close()
             if self._process.wait(PATIENCE) != 0:
                 raise OSError
-            if not self._path.stat().st_size:
-                raise OSError(f"{self._path.name} is empty")
+            if self._path.is_symlink() or not self._path.is_file():
+                raise OSError(f"{self._path.name} is no file")
+            with open(self._path, "rb") as file:
+                if file.read(8)[4:] != b"ftyp":  # with which an mp4 begins (ISO/IEC 14496-12, 4.3)
+                    raise OSError(f"{self._path.name} is no movie")
 
     def kill(self) -> None:
         """End it at once. Never raises."""

@@ -21,6 +21,8 @@ def alone(run: Callable[Arguments, Outcome]) -> Callable[Arguments, Outcome]:
     @functools.wraps(run)
     def guarded(*arguments: Arguments.args, **keywords: Arguments.kwargs) -> Outcome:
         check_process()
+        if not threading.main_thread().is_alive():
+            raise SceneError("this process is ending, and no run can begin in it: wait for the run before it ends")
         if not _under_way.acquire(blocking=False):
             raise SceneError(
                 "a run is under way in this process, and there can be one at a time: wait for its end, or start this "

@@ -33,7 +33,7 @@ def finish(run, stopped: str, failure: Exception | None) -> tuple[Result, SceneE
         end.write_rest(fracture)
     well = run.over and failure is None and end.attempt.problem is None
     summary = end.sum_up(fracture, complete=well and not run.lost)
-    if run.folder is not None and summary.get("complete"):
+    if run.folder is not None and summary.get("complete") and end.attempt.problem is None:
         run.folder.complete()
     view, given_up = end.view, run.writer.problem if run.writer is not None and run.interrupt.hurried else ""
     result = Result(

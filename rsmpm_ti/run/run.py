@@ -289,8 +289,7 @@ class Run:
         self._look(view)
         if self.writer is not None and self.writer.problem:  # asked now that everybody has seen this row
             raise SceneError(f"{self.out} cannot be written: {self.writer.problem}; {still_kept(self.writer.problem)}")
-        if self.settings.progress is not None:
-            self.settings.progress(self._progress(view))
+        self._tell(view)
 
     @property
     def over(self) -> bool:
@@ -329,6 +328,14 @@ class Run:
 
     def wall(self) -> float:
         return self.wall_before + time.perf_counter() - self.started
+
+    def _tell(self, view) -> None:
+        if self.settings.progress is None:
+            return
+        try:
+            self.settings.progress(self._progress(view))
+        except (Exception, SystemExit, GeneratorExit) as error:
+            raise ObserverError(f"progress failed: {type(error).__name__}: {error}") from error
 
     def _progress(self, view) -> Progress:
         return Progress(

@@ -74,7 +74,7 @@ class Watch:
     def _ask(self, method, *arguments):
         try:
             return method(*arguments)
-        except Exception as error:
+        except (Exception, SystemExit, GeneratorExit) as error:  # a user's may say sys.exit()
             if self.own:
                 raise
             said = f"{type(error).__name__}: {error}"
