@@ -31,11 +31,9 @@ class Gallery:
         """Frames by kind, for `write`."""
         return {kind: painter.paint(snapshot, history, number) for kind, painter in self.painters.items()}
 
-    def write(self, number: int, images: dict[str, np.ndarray]) -> None:
-        """Frames to files and into the movie; in order of their numbers."""
-        for kind, image in images.items():
-            write_png(self._out / frame_name(kind, number), image, painter=self._wanted.painters["backend"])
-        self._film(images["stress"], images["cracks"])
+    def write(self, kind: str, number: int, image: np.ndarray) -> None:
+        """A frame to its file."""
+        write_png(self._out / frame_name(kind, number), image, painter=self._wanted.painters["backend"])
 
     def refilm(self, numbers: list[int]) -> None:
         """Begin the movie with frames of a run that goes on, from their files, without those that are damaged."""
@@ -45,7 +43,7 @@ class Gallery:
             except (OSError, ValueError, SyntaxError) as error:  # Pillow raises each of them
                 self._warn(f"the movie goes without frame {number:04d}, which is damaged ({error})")
                 continue
-            self._film(*pictures)
+            self.film(*pictures)
 
     def _read(self, kind: str, number: int) -> np.ndarray:
         return read_png(self._out / frame_name(kind, number), self.painters[kind].layout.size)
@@ -53,8 +51,8 @@ class Gallery:
     def _warn(self, sentence: str) -> None:
         self.warning = "; ".join(filter(None, (self.warning, sentence)))
 
-    def _film(self, stress: np.ndarray, cracks: np.ndarray) -> None:
-        """A movie that fails, for whatever reason, costs the movie alone."""
+    def film(self, stress: np.ndarray, cracks: np.ndarray) -> None:
+        """Into the movie, in order of the frames' numbers. One that fails, whatever the reason, costs the movie alone."""
         if self._movie is not None:
             try:
                 self._movie.add(stress, cracks)

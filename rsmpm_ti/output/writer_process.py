@@ -20,7 +20,7 @@ from rsmpm_ti.output.writer import ALIVE, READY, REPORT
 NICENESS = 10
 """The solver goes first; painting takes the time that its threads leave."""
 
-WAITING = 4
+WAITING = 8
 """Painted frames, VTU files and checkpoints that may wait for the thread that writes them."""
 
 
@@ -48,7 +48,10 @@ class Desk:
         self._later(self.gallery.refilm, numbers)
 
     def frame(self, number: int, readout, history) -> None:
-        self._later(self.gallery.write, number, self.gallery.paint(number, readout.snapshot(), history))
+        images = self.gallery.paint(number, readout.snapshot(), history)
+        for kind, image in images.items():
+            self._later(self.gallery.write, kind, number, image)
+        self._later(self.gallery.film, images["stress"], images["cracks"])
 
     def vtu(self, entries, readout, instant) -> None:
         self._later(write_vtu, self.out / entries[-1][1], readout.snapshot(), instant)

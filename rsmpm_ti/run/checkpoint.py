@@ -15,6 +15,7 @@ import numpy as np
 
 from rsmpm_ti.errors import ObserverError, RockWarning, SceneError, refuse, short, shown
 from rsmpm_ti.output.files import CHECKPOINTS
+from rsmpm_ti.output.folder import RunFolder
 from rsmpm_ti.run.kept.contents import Contents
 from rsmpm_ti.run.kept.layout import MOST_TEXT, OBSERVERS, check_layout
 from rsmpm_ti.run.kept.observers import check_progress
@@ -202,6 +203,19 @@ def read(
     if damaged:
         raise SceneError(f"{damaged} and there is no other; start anew without --resume")
     return None
+
+
+def kept_in(folder: RunFolder, scene: Scene, seeds, settings: Settings, damaged: list[str]) -> dict | None:
+    """Arrays of the checkpoint from which to go on; None where there is none, and the run starts anew. damaged: takes
+    the names of those that were passed over."""
+    kept = read(folder.path, scene, seeds, settings, damaged)
+    if kept is None:
+        folder.start_anew()
+        said = f"there is no checkpoint in {folder.path} to go on from: the run starts anew"
+        warnings.warn(said, RockWarning, stacklevel=4)
+    else:
+        check_end(kept, scene)
+    return kept
 
 
 def _sound(path: Path, scene: Scene, seeds, settings: Settings) -> dict[str, np.ndarray]:

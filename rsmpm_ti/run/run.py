@@ -78,28 +78,15 @@ def simulate(
         try:
             damaged: list[str] = []
             if resume:
-                kept = _kept(folder, scene, seeds, settings, damaged)
+                from rsmpm_ti.run.checkpoint import kept_in
+
+                kept = kept_in(folder, scene, seeds, settings, damaged)
                 said += [f"{name} was damaged; the run went on from the checkpoint before it" for name in damaged]
             run = Run(scene, seeds, folder, settings, interrupt, kept, said)
             folder.remove(damaged)  # else the next checkpoint would set it aside, in the place of the good one
             return run.go()
         finally:
             folder.release()
-
-
-def _kept(folder: RunFolder, scene: Scene, seeds, settings: Settings, damaged: list[str]) -> dict | None:
-    """Arrays of the checkpoint from which to go on; None where there is none, and the run starts anew. damaged: takes
-    the names of those that were passed over."""
-    from rsmpm_ti.run.checkpoint import check_end, read
-
-    kept = read(folder.path, scene, seeds, settings, damaged)
-    if kept is None:
-        folder.start_anew()
-        said = f"there is no checkpoint in {folder.path} to go on from: the run starts anew"
-        warnings.warn(said, RockWarning, stacklevel=4)
-    else:
-        check_end(kept, scene)
-    return kept
 
 
 def _tuple(entries):

@@ -122,6 +122,7 @@ def test_scaling_names_particles_and_takes_few_steps_of_many():
     assert steps_for(SIZES[0]) == 500 and steps_for(SIZES[-1]) == 6
 
 
+@pytest.mark.validation
 def test_fill_compares_both_grids_where_the_same_is_filled(capsys, monkeypatch):
     from rsmpm_ti.bench import fill
 

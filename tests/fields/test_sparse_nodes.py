@@ -82,7 +82,7 @@ def test_every_node_of_every_active_block_is_visited_once(restart_taichi, blocks
     assert visits(nodes) == BLOCK ** len(blocks) * np.prod(blocks)
 
 
-@pytest.mark.parametrize("threads", [1, 2])
+@pytest.mark.parametrize("threads", [pytest.param(1, marks=pytest.mark.validation), 2])
 @pytest.mark.parametrize("cells", [(30, 30), (33, 50), (13, 18, 22), *LONG], ids=str)
 def test_sparse_run_is_the_dense_one(restart_taichi, cells, threads):
     """Bit for bit on one thread, and on two: the order of particles, and so of sums, is the same."""

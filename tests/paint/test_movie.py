@@ -47,7 +47,7 @@ HANDS = {
     "says why": ("cat > /dev/null; echo no space >&2; exit 1", "status 1: no space"),
     "takes nothing": ("sleep 1000", "did not answer for 0.5 s"),
     "never finishes": ("cat > /dev/null; sleep 1000", "did not answer for 0.5 s"),
-    "makes nothing": ("cat > /dev/null; exit 0", "is empty"),
+    "makes nothing": ("cat > /dev/null; exit 0", "is no movie"),
 }
 
 

@@ -78,7 +78,8 @@ def test_a_folder_that_took_the_place_of_the_runs_is_not_written_into(tmp_path):
     out, mine = tmp_path / "out", {}
 
     def progress(p):
-        if not mine and (out / "history.csv").parent.exists() and (out / "frames" / "stress_0000.png").exists():
+        if not mine and (out / "frames" / "cracks_0001.png").exists():
+            time.sleep(0.5)  # the painter has done what it was told to so far
             out.rename(tmp_path / "elsewhere")
             shutil.copytree(tmp_path / "elsewhere", out)
             for path in out.rglob("*"):

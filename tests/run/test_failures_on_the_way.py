@@ -67,6 +67,7 @@ linux = pytest.mark.skipif(not Path("/proc/self/task").exists(), reason="finds a
 
 
 @linux
+@pytest.mark.validation
 def test_killed_painter_costs_pictures_and_nothing_else(tmp_path):
     run = started(tmp_path, *SLOW, "--checkpoint-every", "1000")
     wait_for(tmp_path / "frames" / "stress_0002.png", run)
