@@ -52,7 +52,7 @@ class Gallery:
         self.warning = "; ".join(filter(None, (self.warning, sentence)))
 
     def film(self, stress: np.ndarray, cracks: np.ndarray) -> None:
-        """Into the movie, in order of the frames' numbers. One that fails, whatever the reason, costs the movie alone."""
+        """Into the movie, in order of the frames' numbers. One that fails, for any reason, costs the movie alone."""
         if self._movie is not None:
             try:
                 self._movie.add(stress, cracks)
