@@ -181,6 +181,7 @@ def main(arguments: list[str] | None = None) -> int:
             scene = build(options)
             if not options.check:
                 return run(scene, options)
+            settings_of(options).check(scene)
             print(describe(scene, options.threads, find(options.scene)))
             from rsmpm_ti.run.forecast import disk_said
 
@@ -198,6 +199,14 @@ def main(arguments: list[str] | None = None) -> int:
     except (MemoryError, OSError) as error:  # no memory, descriptors or disk to begin with
         tell(f"rsmpm_ti: cannot be run: {reason(error)}")
         return 2
+
+
+def settings_of(options: argparse.Namespace):
+    """How the options ask for a scene to be run."""
+    from rsmpm_ti.run.settings import Settings
+
+    names = ("precision", "arch", "threads", "deterministic", "checkpoint_every")
+    return Settings(**{name: getattr(options, name) for name in names})
 
 
 def folder(options: argparse.Namespace) -> Path:

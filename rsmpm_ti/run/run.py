@@ -60,6 +60,8 @@ def simulate(
     for name, asked in (("overwrite", overwrite), ("resume", resume)):
         if asked and out is None:
             raise refuse(name, asked, "False without an output folder", "give the folder of the run as `out`")
+    if out is not None and not isinstance(out, str | os.PathLike):
+        raise refuse("out", out, "the path of a folder, as text or a Path")
     if overwrite and resume:
         raise refuse("overwrite", overwrite, "False with resume", "a run is replaced, or it goes on")
     seeds, kept = scene.particles(), None

@@ -19,6 +19,7 @@ from rsmpm_ti.output import manifest
 from rsmpm_ti.output.files import CHECKPOINTS
 from rsmpm_ti.output.folder import prepare
 from rsmpm_ti.run.run import simulate
+from rsmpm_ti.scene import main
 from rsmpm_ti.spec.scene import Output
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -100,3 +101,15 @@ def test_a_case_whose_process_is_killed_breaks_alone(tmp_path):
     killed = run_cases("killed_case", ["kills"], False, tmp_path, 1, 1)
     (done,) = list(killed)
     assert done.rows == () and "ended with status -9" in done.problem
+
+
+@pytest.mark.parametrize("out", [b"bytes", 5, True, 1.5])
+def test_a_folder_is_named_by_a_path(out):
+    with pytest.raises(SceneError, match="out = .* is refused: it must be the path of a folder"):
+        simulate(QUICK, out=out)
+
+
+@pytest.mark.parametrize("options", [("--threads", "0"), ("--threads", "9999"), ("--checkpoint-every", "nan")])
+def test_a_check_refuses_what_a_run_refuses(capsys, options):
+    assert main(["cube", "--quick", "--check", *options]) == 2
+    assert "is refused" in capsys.readouterr().err
