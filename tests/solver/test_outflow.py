@@ -100,6 +100,7 @@ def everything_may_leave_or_end_the_run(drive: Drive) -> None:
         drive.advance(1)
 
 
+@pytest.mark.validation
 def test_a_run_that_everything_leaves_has_booked_all_of_it(tmp_path):
     """Mass, momentum and energy of one block in free flight, every file, and no division by what is not there."""
     scene = replace(flight("drop", t_end=2.5e-4), bodies=flight("drop").bodies[:1])

@@ -11,10 +11,10 @@ from rsmpm_ti.verify.__main__ import main
 from rsmpm_ti.verify.catalogue import CASES, MODULES
 from rsmpm_ti.verify.strength.weibull import strips
 
-LONGER = {"manufactured_b", "uniaxial", "lab_friction", "lab_triaxial"}
-"""Cases of the quick tier that the suite leaves to its own longer tier: a minute, and `manufactured_a` is like the one;
-the hard case `uniform_failure` comes to the same strength as the other in 10 s. Half a minute: the jacket, which
-`triaxial` has, and friction."""
+LONGER = {"manufactured_b", "uniaxial", "lab_friction", "lab_triaxial", "lab_platens", "slit_field", "cracked_disc"}
+"""Cases of the quick tier that the suite leaves to its own longer tier: 10 to 60 s each, and something else in it is like
+them. `manufactured_a` like `_b`, the hard case `uniform_failure` like `uniaxial`, `triaxial` like the jacket,
+tests/solver/test_platens.py like platens, `kirsch` and `first_failure` like the stress about a flaw."""
 
 QUICK = [
     pytest.param(name, marks=[pytest.mark.validation] * (name in LONGER)) for name, case in CASES.items() if case.quick
