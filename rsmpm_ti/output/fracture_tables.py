@@ -121,7 +121,10 @@ CRACKS = Table(
             name="tip_speed_over_rayleigh", unit="1", about="the same over the Rayleigh speed of the rock as run",
             value=each(lambda row: float(row.crack.speed_at.max()) / row.rayleigh_speed),
         ),
-        Column(name="length_m", unit="m", about="of its line; 2D, and none of a zone wider than a quarter of it", value=course(lambda line: line.length)),
+        Column(
+            name="length_m", unit="m", about="of its line; 2D, and none of a zone wider than a quarter of it",
+            value=course(lambda line: line.length),
+        ),
         Column(
             name="tortuosity", unit="1", about="length over the distance of its ends; 2D",
             value=course(lambda line: line.tortuosity),
