@@ -75,6 +75,8 @@ class End:
             self.attempt(write_fracture, self._file, fracture, self.view.history)
         if not self.run.writer.problem:
             self.attempt(self._paint, fracture, what="summary.png cannot be painted")
+        elif self.failure is None:  # it has failed since the last row was looked at
+            self.attempt(self.run.writer.check)
         if self.run.writer.problem and self._arrays is not None:  # it may have got no further than to be ordered
             self.attempt(self._keep, self._arrays)
         if not self.run.writer.problem:

@@ -113,3 +113,16 @@ def test_a_folder_is_named_by_a_path(out):
 def test_a_check_refuses_what_a_run_refuses(capsys, options):
     assert main(["cube", "--quick", "--check", *options]) == 2
     assert "is refused" in capsys.readouterr().err
+
+
+def test_a_painter_that_dies_after_the_last_row_is_told(tmp_path, monkeypatch):
+    def killed(self, _):
+        self._child.kill()
+        self._wait(lambda: self._child.poll() is not None)
+        self._end()
+
+    monkeypatch.setattr("rsmpm_ti.output.writer.Writer.checkpoint", killed)
+    with pytest.raises(SceneError, match="ended with status -9; what is complete is kept; go on with --resume"):
+        simulate(QUICK, out=tmp_path, threads=1, checkpoint_every=1e6)
+    assert json.loads((tmp_path / "summary.json").read_text())["complete"] is False
+    assert (tmp_path / CHECKPOINTS[0]).exists()
