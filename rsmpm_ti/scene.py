@@ -9,7 +9,7 @@ from dataclasses import replace
 from pathlib import Path
 from typing import TextIO, cast
 
-from rsmpm_ti.errors import RockWarning, SceneError, UnstableRun, reason, shown
+from rsmpm_ti.errors import RockWarning, SceneError, UnstableRun, shown
 from rsmpm_ti.process import Output, command, tell
 from rsmpm_ti.spec.library.glance import glance
 from rsmpm_ti.spec.library.names import run_name
@@ -181,24 +181,18 @@ def main(arguments: list[str] | None = None) -> int:
             scene = build(options)
             if not options.check:
                 return run(scene, options)
-            settings_of(options).check(scene)
-            print(describe(scene, options.threads, find(options.scene)))
             from rsmpm_ti.run.forecast import disk_said
 
+            settings_of(options).check(scene)
+            print(describe(scene, options.threads, find(options.scene)))
             seeds = scene.particles()
             count = sum(len(body.x) for body in seeds)
             for sentence in [*review(scene, seeds), *disk_said(scene, count, folder(options))]:
                 say(sentence)
             return 0
-    except SceneError as error:
-        tell(f"rsmpm_ti: {' '.join(str(error).split())}")
-        return 2
     except UnstableRun as error:
         tell(f"rsmpm_ti: the run became unstable: {error}")
         return 3
-    except (MemoryError, OSError) as error:  # no memory, descriptors or disk to begin with
-        tell(f"rsmpm_ti: cannot be run: {reason(error)}")
-        return 2
 
 
 def settings_of(options: argparse.Namespace):

@@ -14,7 +14,7 @@ from rsmpm_ti.spec.loader import load_scene
 NAMES = {
     "cube": "cube", "../scene.json": "here", "scene.json": "inside", "./scene.json": "inside", "/scene.json": "scene",
     "a/b/scene.json": "b", "../../x/scene.json": "x", ".hidden/scene.json": "hidden", "my scene (2).py": "my_scene__2_",
-    "v1.2": "v1.2", "/tmp/x.y.py": "x.y", "..py": "scene", "x\ny.py": "x_y", "岩石.py": "岩石", "other.json": "other",
+    "v1.2": "v1.2", "/a/b/x.y.py": "x.y", "..py": "scene", "x\ny.py": "x_y", "岩石.py": "岩石", "other.json": "other",
     "~.py": "_", "-x.py": "-x", "x" * 300 + ".py": "x" * MAX_LETTERS, "岩" * 300 + ".py": "岩" * (MAX_BYTES // 3),
 }  # fmt: skip
 
