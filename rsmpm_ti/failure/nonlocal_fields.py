@@ -29,7 +29,7 @@ def add_stress(sim: ti.template(), start, stop, slot, what: ti.template(), dt, t
         xi = coordinates(sim, p, sim.grid.frame())
         base = sim.grid.base(xi, sim.shape)
         w, dw = weights_at(sim, xi, base)
-        sigma, V_p = particles.sigma[p], particles.volume[p] * particles.J[p]
+        sigma, V_p = particles.sigma[p], particles.volume[p] * sim.rock.after_failure.carrying_ratio(sim, p)
         strain = particles.history.crack_strain_max[p][0]
         carried = V_p * ti.Vector([sigma[0], sigma[1], sigma[2], sigma[3], 1.0, strain])
         for offset in ti.static(sim.stencil):

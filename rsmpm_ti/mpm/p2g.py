@@ -18,12 +18,16 @@ from rsmpm_ti.rock.tensors import isotropic, unpack
 
 @ti.func
 def stress_on_nodes(sim: ti.template(), p):
-    """V_p (sigma_p - q + p), packed; p is the confining pressure, which acts on every surface: confinement.py."""
+    """V_p (sigma_p - q) + V p, packed; p is the confining pressure, which acts on every surface: confinement.py.
+
+    V_p is the volume that carries stress, V all of it, with what cracks are open by.
+    """
     particles = sim.particles
     sigma = sim.rock.viscosity.added_to(sim, p, particles.sigma[p])
+    carried = sim.rock.after_failure.carrying_ratio(sim, p) * sigma
     if ti.static(sim.confined):
-        sigma += isotropic(sim.confinement, sigma.n)
-    return particles.volume[p] * sim.rock.after_failure.carrying_ratio(sim, p) * sigma
+        carried += isotropic(sim.confinement * particles.J[p], sigma.n)
+    return particles.volume[p] * carried
 
 
 @ti.func

@@ -9,11 +9,14 @@ import math
 import taichi as ti
 
 from rsmpm_ti.rock.criteria import load_factors, strengths
+from rsmpm_ti.rock.crushed_rock import crushed_stress
 from rsmpm_ti.rock.tensors import (
     double_contraction,
     extreme_principals,
     in_frame,
     out_of_frame,
+    material_normal,
+    midpoint_gradient,
     principal_angle,
     rotated_vector,
     symmetric,
@@ -59,13 +62,16 @@ def has_failed(sim: ti.template(), p, mode):
 
 @ti.func
 def spring_energy(sim: ti.template(), p):
-    """Energy per volume that partly opened cracks give back on closing: half of secant stiffness times strain^2."""
+    """Energy per volume that partly opened cracks give back on closing: half of secant stiffness times strain^2.
+
+    Pores of crushed rock give none back.
+    """
     h, tension = sim.particles.history, strength_left(sim, p)
     strain, largest = h.crack_strain[p], h.crack_strain_max[p]
     energy = 0.0
     for d in ti.static(range(2)):
         energy += 0.5 * tension[d] * strain[d] * strain[d] / ti.max(largest[d], MIN_CRACK_STRAIN)
-    return energy
+    return ti.select(sim.particles.mode[p] == 1, energy, 0.0)
 
 
 @ti.func
@@ -137,57 +143,52 @@ def slip_on_crack(sim: ti.template(), p, s, left):
 
 
 @ti.func
-def slip_everywhere(sim: ti.template(), p, s, cohesion):
-    """Mohr-Coulomb of crushed rock on every plane, with what is left of its cohesion, at constant volume.
-
-    In the plane the mean stress stays and the radius shrinks; sigma_zz is then held between what the envelope allows
-    beside the two in-plane stresses. A plate has none, and nothing beside it.
-    """
-    h, law, criterion = sim.particles.history, sim.rock.after_failure, sim.rock.criterion
-    ratio = cohesion / strengths(sim, p)[1]
-    sin_phi = law.sin_residual + (criterion.sin_phi - law.sin_residual) * ratio
-    c_cos_phi = cohesion * ti.sqrt(1.0 - sin_phi * sin_phi)
-    centre, half = 0.5 * (s[0] + s[1]), 0.5 * (s[0] - s[1])
-    radius = ti.sqrt(half * half + s[3] * s[3])
-    most = ti.max(c_cos_phi - centre * sin_phi, 0.0)
-    if radius > most:
-        h.slip[p] = h.slip[p] + (radius - most) / sim.rock.elasticity.mu
-        scale = most / radius
-        s[0], s[1], s[3] = centre + half * scale, centre - half * scale, s[3] * scale
-        radius = most
-    if ti.static(not sim.rock.elasticity.plane_stress):
-        flow, strength = (1.0 + sin_phi) / (1.0 - sin_phi), 2.0 * c_cos_phi / (1.0 - sin_phi)
-        most_pressed, least_pressed = flow * (centre + radius) - strength, (centre - radius + strength) / flow
-        s[2] = ti.max(ti.min(s[2], least_pressed), most_pressed)
-    return s
+def crush(sim: ti.template(), p):
+    """The particle fails in shear: what its cracks are open by is the pores of crushed rock from now on."""
+    particles, h = sim.particles, sim.particles.history
+    particles.mode[p] = 2
+    h.slip[p] = ti.max(h.slip[p], MIN_CRACK_STRAIN)
+    pores = h.crack_strain[p][0] + h.crack_strain[p][1]
+    h.crack_strain[p] = ti.Vector([pores, 0.0])
+    h.crack_strain_max[p] = ti.max(h.crack_strain_max[p], h.crack_strain[p])
 
 
 @ti.func
 def crack_return(sim: ti.template(), p, G):
     """Stress of a cracked particle from its elastic trial stress in particles.sigma; returns (stress, energy lost).
 
-    Energy lost: per volume, by opening, slip and damage in this step. G: displacement gradient of the step.
+    Energy lost: per volume of solid, by opening, slip and damage in this step. G: displacement gradient of the step.
     """
     particles, elasticity, h = sim.particles, sim.rock.elasticity, sim.particles.history
-    trial = particles.sigma[p]
-    before = elasticity.energy(trial) + spring_energy(sim, p)
+    trial, strain = particles.sigma[p], symmetric(midpoint_gradient(G))
+    spring = spring_energy(sim, p)
     sim.rock.nonlocal_mean.follow(sim, p)
-    left = strength_left(sim, p)
-    h.crack_normal[p] = rotated_vector(h.crack_normal[p], G)
-    s = open_cracks(sim, p, in_frame(trial, h.crack_normal[p]), left)
-    if ti.static(not sim.rock.after_failure.rotating):
-        if particles.mode[p] == 1:
-            s = slip_on_crack(sim, p, s, left)
+    before = h.crack_normal[p]
+    turned = rotated_vector(before, G)
+    if ti.static(sim.rock.after_failure.rotating):
+        h.crack_normal[p] = turned
+    else:
+        h.crack_normal[p] = material_normal(before, G)
+    sigma = trial
     if particles.mode[p] == 1:
-        load = load_factors(sim, p, extreme_principals(s))
-        if sim.rock.criterion.shear_load(load[0], load[1]) >= 1.0:
-            particles.mode[p] = 2
-            h.slip[p] = ti.max(h.slip[p], MIN_CRACK_STRAIN)
-            left = strength_left(sim, p)
+        # rock beside a crack turns with its faces, not with the mean spin, half of which is slip
+        middle = (before + h.crack_normal[p]).normalized()
+        load = elasticity.load(strain)
+        strain = in_frame(strain, middle)
+        s = in_frame(trial - load, turned) + elasticity.load(strain)
+        trial = out_of_frame(s, h.crack_normal[p])
+        strain = out_of_frame(strain, h.crack_normal[p])
+        left = strength_left(sim, p)
+        s = open_cracks(sim, p, s, left)
+        if ti.static(not sim.rock.after_failure.rotating):
+            s = slip_on_crack(sim, p, s, left)
+        factors = load_factors(sim, p, extreme_principals(s))
+        if sim.rock.criterion.shear_load(factors[0], factors[1]) >= 1.0:
+            crush(sim, p)
+        sigma = out_of_frame(s, h.crack_normal[p])
     if particles.mode[p] == 2:
-        s = slip_everywhere(sim, p, s, left[2])
-    sigma = out_of_frame(s, h.crack_normal[p])
+        sigma = crushed_stress(sim, p, sigma, strength_left(sim, p))
     # the step's work is done by the mean of old and new stress, that of the trial by more
-    too_much = 0.5 * double_contraction(trial - sigma, symmetric(G))
-    dissipated = before - elasticity.energy(sigma) - spring_energy(sim, p) - too_much
+    too_much = 0.5 * double_contraction(trial - sigma, strain)
+    dissipated = elasticity.energy(trial) + spring - elasticity.energy(sigma) - spring_energy(sim, p) - too_much
     return sigma, dissipated

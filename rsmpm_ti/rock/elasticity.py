@@ -48,6 +48,11 @@ class Hooke:
         return self.p_wave_modulus, self.lam, self.lam
 
     @property
+    def pore_stiffness(self) -> float:
+        """Mean stress per volume that pores give back [Pa]: the bulk modulus; in a plate both are those of its plane."""
+        return self.E / (2.0 * (1.0 - self.nu)) if self.plane_stress else self.bulk
+
+    @property
     def p_wave_modulus(self) -> float:
         """rho c^2 of the fastest wave [Pa]: lambda + 2 mu, or E/(1 - nu^2) in a plate that is free to thicken."""
         return self.E / (1.0 - self.nu**2) if self.plane_stress else self.lam + 2.0 * self.mu
@@ -64,9 +69,14 @@ class Hooke:
     def stress(self, sigma, G):
         """New packed stress from the step's displacement gradient G = dt grad v, dim x dim."""
         rotated, d_eps = hughes_winget(sigma, G)
+        return rotated + self.load(d_eps)
+
+    @ti.func
+    def load(self, strain):
+        """Packed stress of a packed strain; in plane stress whatever its thickness strain."""
         if ti.static(self.plane_stress):
-            d_eps[2] = -self.nu / (1.0 - self.nu) * (d_eps[0] + d_eps[1])
-        return rotated + isotropic(self.lam * trace(d_eps), sigma.n) + 2.0 * self.mu * d_eps
+            strain[2] = -self.nu / (1.0 - self.nu) * (strain[0] + strain[1])
+        return isotropic(self.lam * trace(strain), strain.n) + 2.0 * self.mu * strain
 
     @ti.func
     def volume_ratio(self, G):
@@ -78,6 +88,13 @@ class Hooke:
         if ti.static(self.plane_stress):
             ratio = ratio ** ((1.0 - 2.0 * self.nu) / (1.0 - self.nu))
         return ratio
+
+    @ti.func
+    def solid_ratio(self, sigma):
+        """Ratio by which a stress has changed the volume of the rock itself: exp of its trace over 3 K, which the rate
+        form integrates to; to third order."""
+        half = trace(sigma) / (6.0 * self.bulk)
+        return (1.0 + half) / (1.0 - half)
 
     @ti.func
     def energy(self, sigma):

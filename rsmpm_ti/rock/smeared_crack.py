@@ -6,7 +6,8 @@ a crack carries nothing until its faces meet again. In the frame of the crack (n
 
     s_nn = a - M e_n - lam e_t,    s_tt = b - lam e_n - M e_t,    s_zz = c - lam_z (e_n + e_t),
 
-where a, b, c are what the stresses would be if the cracks were closed. The stress of a step: crack_return.py.
+where a, b, c are what the stresses would be if the cracks were closed. The stress of a step: crack_return.py, and
+crushed_rock.py for rock that has failed in shear.
 """
 
 import math
@@ -17,7 +18,7 @@ import numpy as np
 import taichi as ti
 from annotated_types import Interval
 
-from rsmpm_ti.checks import ByType, checked
+from rsmpm_ti.checks import ByType, Positive, checked
 from rsmpm_ti.errors import refuse
 from rsmpm_ti.rock.after_failure import AfterFailure, Variable
 from rsmpm_ti.rock.crack_return import (
@@ -29,7 +30,7 @@ from rsmpm_ti.rock.crack_return import (
 )
 from rsmpm_ti.rock.criteria import strengths
 from rsmpm_ti.rock.softening import Brittle, ExponentialSoftening, LinearSoftening
-from rsmpm_ti.units import Angle
+from rsmpm_ti.units import Angle, Length
 
 
 @ti.data_oriented
@@ -40,13 +41,17 @@ class Directional(AfterFailure):
 
     A particle that failed in tension has a crack with its normal along sigma_1 at failure: it carries no tension, or
     what softening leaves of it, across; compression when its faces have met; shear up to c' + |s_nn| tan(phi_r). If
-    the rest of it reaches the Mohr-Coulomb criterion it fails in shear as well. One that failed in shear keeps
-    Mohr-Coulomb with what is left of its cohesion and residual_friction_angle phi_r [degrees] on every plane, without
-    dilation, and no tension. `rotating`: the crack turns with the principal stress, so that no shear acts on it;
-    otherwise it is fixed in the rock and turns only with it.
+    the rest of it reaches the Mohr-Coulomb criterion it fails in shear as well. One that failed in shear is crushed: it
+    keeps Mohr-Coulomb with what is left of its cohesion and residual_friction_angle phi_r [degrees] on every plane, and
+    no tension; what it is open by is pores, which must close before it bears pressure. While it slides with pores shut
+    it dilates by `dilation_angle` [degrees], at most phi_r, which falls by e over a slip of `dilation_slip` [m].
+    `rotating`: the crack turns with the principal stress, so that no shear acts on it; otherwise it is fixed in the
+    rock and turns only with it. The parts of each are in crack_return.py and crushed_rock.py.
     """
 
     residual_friction_angle: Annotated[Angle, Interval(ge=0.0, le=89.0)] = 30.0
+    dilation_angle: Annotated[Angle, Interval(ge=0.0, le=89.0)] = 0.0
+    dilation_slip: Annotated[Length, Positive] = 1e-3
     rotating: bool = False
     softening: Annotated[Brittle | LinearSoftening | ExponentialSoftening, ByType] = Brittle()
 
@@ -58,7 +63,10 @@ class Directional(AfterFailure):
             about="unit normal of the crack, 0 where there is none; turns with the rock",
         ),
         Variable(
-            name="crack_strain", unit="1", per_axis=True, about="strain by opening, across the crack and along it"
+            name="crack_strain",
+            unit="1",
+            per_axis=True,
+            about="strain by opening, across the crack and along it; of crushed rock: by pores, and 0",
         ),
         Variable(name="crack_strain_max", unit="1", per_axis=True, about="the largest crack strains so far"),
         Variable(name="slip", unit="1", about="shear strain by slip, summed"),
@@ -70,6 +78,11 @@ class Directional(AfterFailure):
     dimensions = (2,)
     oriented = True
     max_events = 2  # what failed in tension may fail in shear later
+
+    def __post_init__(self):
+        if self.dilation_angle > self.residual_friction_angle:
+            allowed = f"at most residual_friction_angle = {self.residual_friction_angle:g} degrees"
+            raise refuse("after_failure.dilation_angle", self.dilation_angle, allowed, "more would make energy")
 
     @property
     def softens(self) -> bool:
@@ -83,8 +96,18 @@ class Directional(AfterFailure):
     def sin_residual(self) -> float:
         return math.sin(math.radians(self.residual_friction_angle))
 
+    @ti.func
+    def sin_dilation(self, slip, band):
+        """Sine of the dilation angle that a slip [-] over a crack band [m] has left."""
+        found = 0.0
+        if ti.static(self.dilation_angle > 0.0):
+            found = ti.static(math.sin(math.radians(self.dilation_angle))) * ti.exp(-slip * band / self.dilation_slip)
+        return found
+
     def check(self, rock, shape, dx: float) -> None:
         """Refuse a crack band that loses strength faster than the rock in it unloads: Bazant & Oh (1983), eq. 34."""
+        if self.dilation_angle > 0.0 and rock.elasticity.plane_stress:
+            raise refuse("after_failure.dilation_angle", self.dilation_angle, "0 in plane stress", "a plate bulges")
         pairs = (
             ("G_f_I", rock.criterion.tensile_strength, rock.elasticity.E),
             ("G_f_II", rock.criterion.cohesion, rock.elasticity.mu),
@@ -126,7 +149,7 @@ class Directional(AfterFailure):
     @ti.func
     def respond(self, sim: ti.template(), p, G, dt):
         sigma, dissipated = crack_return(sim, p, G)
-        dissipated *= sim.particles.J[p]
+        dissipated *= sim.rock.elasticity.solid_ratio(sigma)
         h = sim.particles.history
         h.dissipated[p] = h.dissipated[p] + dissipated
         mode = sim.particles.mode[p]
@@ -136,8 +159,15 @@ class Directional(AfterFailure):
 
     @ti.func
     def stored(self, sim: ti.template(), p):
-        elastic = sim.rock.elasticity.energy(sim.particles.sigma[p])
-        return sim.particles.J[p] * elastic + sim.particles.J[p] * spring_energy(sim, p)
+        energy = sim.rock.elasticity.energy(sim.particles.sigma[p]) + spring_energy(sim, p)
+        return self.carrying_ratio(sim, p) * energy
+
+    @ti.func
+    def carrying_ratio(self, sim: ti.template(), p):
+        """That of the solid: what cracks and pores are open by carries nothing."""
+        particles = sim.particles
+        solid = sim.rock.elasticity.solid_ratio(particles.sigma[p])
+        return ti.select(particles.mode[p] == 0, particles.J[p], solid)
 
     @ti.func
     def damage(self, sim: ti.template(), p):

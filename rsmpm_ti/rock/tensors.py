@@ -150,6 +150,14 @@ def rotated_vector(n: ti.template(), G: ti.template()):
 
 
 @ti.func
+def material_normal(n: ti.template(), G: ti.template()):
+    """Unit normal, after a step of displacement gradient G, of the material line whose normal n was [2]: F^-T n of
+    length 1 again, F = 1 + G (Nanson's formula). A rotation turns it as `hughes_winget` turns a stress."""
+    turned = ti.Vector([n[0] + G[1, 1] * n[0] - G[1, 0] * n[1], n[1] + G[0, 0] * n[1] - G[0, 1] * n[0]])
+    return turned / ti.max(turned.norm(), 1e-30)
+
+
+@ti.func
 def in_frame(s: ti.template(), n: ti.template()):
     """A packed 2D stress in the frame whose first axis is the unit vector n: (nn, tt, zz, nt)."""
     cos_2, sin_2 = n[0] * n[0] - n[1] * n[1], 2.0 * n[0] * n[1]

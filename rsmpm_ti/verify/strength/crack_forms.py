@@ -106,34 +106,32 @@ def turning(strain: np.ndarray, name: str) -> np.ndarray:
 
 
 def crushed(strain: np.ndarray, name: str) -> tuple[np.ndarray, int]:
-    """(stress [steps, 4], step of failure) of rock that fails in shear under strains (xx, yy, 0) with yy < xx.
+    """(stress [steps, 4], step of failure) of rock that fails in shear under strains (xx, yy, 0), pressed most along y.
 
-    The mean in-plane stress stays elastic; half the difference is at most c cos(phi) - mean sin(phi) with what slip has
-    left of c, and phi between residual and full by the same share; sigma_zz is brought back within the envelope.
+    Two slips at constant volume, of x and of z against y, each with Coulomb's condition on its two stresses: those of
+    what slips touch the envelope, the other is within it. c is what the slip of the step before has left, and phi
+    between residual and full by the same share.
     """
-    mean, half = (LAM + MU) * (strain[:, 0] + strain[:, 1]), MU * (strain[:, 0] - strain[:, 1])
-    first = int(np.argmax(half + mean * SIN >= COHESION * np.sqrt(1.0 - SIN**2)))
-    failed = np.arange(len(strain)) >= first
-
-    def envelope(slip):
-        fraction = SHARES[name](np.maximum(slip, 1e-12), COHESION, G_F_II)  # failed: something has slipped
+    trace = LAM * (strain[:, 0] + strain[:, 1])
+    elastic = np.stack([trace + 2.0 * MU * strain[:, 0], trace + 2.0 * MU * strain[:, 1], trace])
+    stress, slips, first = elastic.copy(), np.zeros(2), len(strain)
+    for k in range(len(strain)):
+        x, y, z = elastic[:, k] + MU * np.array([-slips[0], slips.sum(), -slips[1]])
+        if k < first:
+            if 0.5 * (x - y) + 0.5 * (x + y) * SIN < COHESION * np.sqrt(1.0 - SIN**2):
+                continue
+            first = k
+        fraction = float(SHARES[name](max(slips.sum(), 1e-12), COHESION, G_F_II))
         sin = SIN_R + (SIN - SIN_R) * fraction
-        return sin, fraction * COHESION * np.sqrt(1.0 - sin**2)
-
-    def excess(slip):
-        sin, c_cos = envelope(slip)
-        return half - MU * slip - np.maximum(c_cos - mean * sin, 0.0)
-
-    slip = np.where(failed & (excess(0.0 * half) > 0.0), root(excess, 0.0 * half, np.maximum(half / MU, 0.0)), 0.0)
-    slip = np.maximum.accumulate(slip)
-    radius = half - MU * slip
-    sin, c_cos = envelope(slip)
-    flow, strength = (1.0 + sin) / (1.0 - sin), 2.0 * c_cos / (1.0 - sin)
-    zz, now = np.zeros(len(strain)), 0.0
-    for k, step in enumerate(np.diff(strain[:, 0] + strain[:, 1], prepend=0.0)):
-        now += LAM * step
-        if failed[k]:
-            low, high = mean[k] - radius[k], mean[k] + radius[k]
-            now = np.clip(now, flow[k] * high - strength[k], (low + strength[k]) / flow[k])
-        zz[k] = now
-    return np.stack([mean + radius, mean - radius, zz, 0.0 * zz], axis=1), first
+        c_cos = fraction * COHESION * np.sqrt(1.0 - sin**2)
+        excess = np.array([0.5 * (other - y) + 0.5 * (other + y) * sin - c_cos for other in (x, z)])
+        cross = 0.5 * (1.0 - sin)
+        both = (excess - cross * excess[::-1]) / (MU * (1.0 - cross**2))
+        alone = np.maximum(excess, 0.0) / MU
+        if both.min() < 0.0:  # one slips alone, if any
+            more = np.where(excess == excess.max(), alone, 0.0)
+        else:
+            more = both
+        slips += more
+        stress[:, k] = x - MU * more[0], y + MU * more.sum(), z - MU * more[1]
+    return np.stack([*stress, 0.0 * stress[0]], axis=1), first

@@ -12,7 +12,7 @@ from rsmpm_ti.rock.softening import Brittle, ExponentialSoftening, LinearSofteni
 from rsmpm_ti.rock.viscosity import NoViscosity
 from rsmpm_ti.verify.strength import crack_forms as by_hand
 from rsmpm_ti.verify.strength.crack_forms import BAND, COHESION, G_F_I, G_F_II, LAM, MU, TENSILE, M
-from rsmpm_ti.verify.strength.material_point import follow, gradients, turned_by
+from rsmpm_ti.verify.strength.material_point import follow, gradients, simple_shear, turned_by
 
 STEP = 1e-6
 """Strain of a step; its load M STEP is 0.9 % of the tensile strength."""
@@ -90,6 +90,7 @@ def _padded(G: np.ndarray, steps: int) -> np.ndarray:
 def followed(law: Directional) -> Followed:
     """Take the law along every path, along the same turned by 30 degrees, apart after crushing, and in a spin."""
     paths = {name: gradients(strain) for name, strain in PATHS.items()}
+    paths["sheared"] = simple_shear(PATHS["sheared"])
     turned = {f"{name}, turned": turned_by(G, np.full(len(G) + 1, np.pi / 6.0)) for name, G in paths.items()}
     spin = np.linspace(0.0, 0.5 * np.pi, len(paths["sheared"]) + 1)
     paths["spinning"] = turned_by(paths["sheared"], spin)

@@ -23,6 +23,9 @@ class History:
     sigma: np.ndarray  # [paths, steps, 4]: xx, yy, zz, xy, Cauchy, tension positive [Pa]
     mode: np.ndarray  # [paths, steps]: 0 intact, 1 failed in tension, 2 in shear
     lost: np.ndarray  # energy lost since the start, per initial volume [J/m^3], [paths, steps]
+    opening: np.ndarray  # crack strain, [paths, steps, 2]: across the crack and along it, or of pores and 0
+    normal: np.ndarray  # of the crack, [paths, steps, 2]
+    carrying: np.ndarray  # volume that carries stress over the stress-free volume, [paths, steps]
 
 
 def gradients(strain: np.ndarray) -> np.ndarray:
@@ -31,6 +34,14 @@ def gradients(strain: np.ndarray) -> np.ndarray:
     G = D (1 - D/2)^-1, whose gradient at mid-step is the increment D itself, so that strains add up without error.
     """
     D = np.diff(strain, axis=-2)[..., [0, 2, 2, 1]].reshape(*strain.shape[:-2], -1, 2, 2)
+    return D @ np.linalg.inv(np.eye(2) - 0.5 * D)
+
+
+def simple_shear(strain: np.ndarray) -> np.ndarray:
+    """As `gradients`, with a spin that keeps lines along x as they are: rock that slides along them."""
+    D = np.diff(strain, axis=-2)[..., [0, 2, 2, 1]].reshape(*strain.shape[:-2], -1, 2, 2)
+    D[..., 0, 1] *= 2.0
+    D[..., 1, 0] = 0.0
     return D @ np.linalg.inv(np.eye(2) - 0.5 * D)
 
 
@@ -54,6 +65,10 @@ def _follow(sim: ti.template(), G: ti.types.ndarray(), sigma: ti.types.ndarray()
                 sigma[p, k, component] = particles.sigma[p][component]
             rest[p, k, 0] = particles.mode[p]
             rest[p, k, 1] = particles.history.dissipated[p]
+            rest[p, k, 2] = sim.rock.after_failure.carrying_ratio(sim, p)
+            for axis in ti.static(range(2)):
+                rest[p, k, 3 + axis] = particles.history.crack_strain[p][axis]
+                rest[p, k, 5 + axis] = particles.history.crack_normal[p][axis]
 
 
 def follow(rock: Rock, dx: float, G: np.ndarray) -> History:
@@ -72,6 +87,13 @@ def follow(rock: Rock, dx: float, G: np.ndarray) -> History:
         shape=Linear(),
     )
     sim = Simulation(scene, scene.particles())
-    sigma, rest = np.zeros((*G.shape[:2], 4)), np.zeros((*G.shape[:2], 2))
+    sigma, rest = np.zeros((*G.shape[:2], 4)), np.zeros((*G.shape[:2], 7))
     _follow(sim, np.ascontiguousarray(G), sigma, rest)
-    return History(sigma, rest[..., 0].astype(int), rest[..., 1])
+    return History(
+        sigma=sigma,
+        mode=rest[..., 0].astype(int),
+        lost=rest[..., 1],
+        carrying=rest[..., 2],
+        opening=rest[..., 3:5],
+        normal=rest[..., 5:7],
+    )
