@@ -16,7 +16,7 @@ LABELS = [f"{crack_paths.label(law)}, psi {law.dilation_angle:g}" for law in LAW
 
 
 def random_legs(paths: int, legs: int, size: float, seed: int) -> np.ndarray:
-    """Velocity gradients times the length of their leg, [paths, legs, 2, 2]: from a hundredth of `size` to all of it."""
+    """Velocity gradients times the time of their leg, [paths, legs, 2, 2]: from a hundredth of `size` to all of it."""
     rng = np.random.default_rng(seed)
     return rng.normal(size=(paths, legs, 2, 2)) * size * 10.0 ** rng.uniform(-2.0, 0.0, size=(paths, legs, 1, 1))
 

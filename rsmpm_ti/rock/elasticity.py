@@ -49,7 +49,7 @@ class Hooke:
 
     @property
     def pore_stiffness(self) -> float:
-        """Mean stress per volume that pores give back [Pa]: the bulk modulus; in a plate both are those of its plane."""
+        """Mean stress per volume given back by pores [Pa]: the bulk modulus; in a plate both are those of its plane."""
         return self.E / (2.0 * (1.0 - self.nu)) if self.plane_stress else self.bulk
 
     @property

@@ -14,7 +14,7 @@ PAIRS = tuple(itertools.permutations(range(3), 2))
 
 
 def by_complementarity(s, sin_phi, sin_psi, c_cos, sweeps=4000):
-    """(stress, slip) [n, 3], [n]: slips g_ij >= 0 of every ordered pair, each either 0 or with its pair on the envelope.
+    """(stress, slip) [n, 3], [n]: slips g_ij >= 0 of every ordered pair, either 0 or with the pair on the envelope.
 
     Slip of a pair strains it by (1 + sin psi)/2 and -(1 - sin psi)/2 (Koiter 1953); projected Gauss-Seidel.
     """
