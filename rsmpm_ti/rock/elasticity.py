@@ -91,10 +91,12 @@ class Hooke:
 
     @ti.func
     def solid_ratio(self, sigma):
-        """Ratio by which a stress has changed the volume of the rock itself: exp of its trace over 3 K, which the rate
-        form integrates to; to third order."""
-        half = trace(sigma) / (6.0 * self.bulk)
-        return (1.0 + half) / (1.0 - half)
+        """Ratio by which a stress has changed the volume of the rock itself: exp(x), x its trace over 3 K, to which the
+        rate form integrates. As a ratio of polynomials, right to x^5/720 and above 0 for any x, it runs as a vector.
+        """
+        x = trace(sigma) / (3.0 * self.bulk)
+        even, odd = 12.0 + x * x, 6.0 * x
+        return (even + odd) / (even - odd)
 
     @ti.func
     def energy(self, sigma):

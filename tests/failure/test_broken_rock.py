@@ -52,15 +52,17 @@ def energy_paths(paths: int, seed: int) -> dict[str, np.ndarray]:
     return {f"{size} in {n}": refined(made_of[size], n) for size in SIZES for n in (COARSE, FINE)}
 
 
-def check_energy(found: dict[str, History], G: dict[str, np.ndarray]) -> None:
+def check_energy(found: dict[str, History], G: dict[str, np.ndarray], rotating: bool) -> None:
     """No path makes energy but by the error of its steps, which is of second order and vanishes with them."""
+    # trial and returned stress differ by at most the load of a step, M |d eps|, and D errs by half of it x d eps; twice
+    # that where a rotating crack turns by up to 45 degrees in a step, from one principal direction to the other
+    most = 1.0 if rotating else 0.5
     for size in SIZES:
         falls = []
         for n in (COARSE, FINE):
             lost, step = found[f"{size} in {n}"].lost, np.linalg.norm(G[f"{size} in {n}"], axis=(-2, -1)).max()
             falls.append((np.maximum.accumulate(lost, axis=1) - lost).max(axis=1))
-            # trial and returned stress differ by at most the load of a step, M |d eps|; D errs by half of it x d eps
-            assert falls[-1].max() < 0.5 * M * step**2
+            assert falls[-1].max() < most * M * step**2
         assert falls[1].sum() < falls[0].sum() / (0.5 * FINE / COARSE)
 
 
@@ -77,7 +79,7 @@ def history(taichi_f64):
     def of(law):
         if law not in found:
             found[law] = all_at_once(law, paths)
-            check_energy(found[law], paths)
+            check_energy(found[law], paths, law.rotating)
         return found[law]
 
     return of
@@ -97,7 +99,7 @@ def test_no_random_path_makes_energy(history, law):
 def test_no_random_path_of_a_plate_makes_energy(taichi_f64, law):
     paths = energy_paths(40, 2)
     found = all_at_once(law, paths, plate=True)
-    check_energy(found, paths)
+    check_energy(found, paths, law.rotating)
     for one in randomly(found):
         assert np.abs(one.sigma[..., 2]).max() < 1e-6  # round-off of MPa
         pores = (one.mode == 2) & (one.opening[..., 0] > 0.0)
@@ -109,7 +111,7 @@ def test_no_random_path_of_a_plate_makes_energy(taichi_f64, law):
 def test_ten_thousand_random_paths_make_no_energy(taichi_f64, law):
     for seed in range(10):
         paths = energy_paths(334, 100 + seed)  # of three sizes
-        check_energy(all_at_once(law, paths), paths)
+        check_energy(all_at_once(law, paths), paths, law.rotating)
 
 
 @every_law
@@ -131,8 +133,9 @@ def test_nothing_presses_across_what_is_open(history, law):
 def test_only_solid_carries_stress(history, law):
     for one in randomly(history(law)):
         solid = np.exp(one.sigma[..., :3].sum(axis=-1) / (3.0 * BULK))  # the rate form's volume under a stress
-        broken = (one.mode != 0) & (np.abs(np.log(solid)) < 0.05)
-        np.testing.assert_allclose(one.carrying[broken], solid[broken], rtol=2e-5)  # to third order, 0.05^3/12
+        broken = (one.mode != 0) & (np.abs(np.log(solid)) < 0.2)
+        np.testing.assert_allclose(one.carrying[broken], solid[broken], rtol=1e-6)  # 0.2^5/720
+        assert one.carrying.min() > 0.0
 
 
 @pytest.mark.parametrize("law", [law for law in LAWS if not law.rotating], ids=str)
