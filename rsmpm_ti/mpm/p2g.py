@@ -24,10 +24,10 @@ def stress_on_nodes(sim: ti.template(), p):
     """
     particles = sim.particles
     sigma = sim.rock.viscosity.added_to(sim, p, particles.sigma[p])
-    carried = sim.rock.after_failure.carrying_ratio(sim, p) * sigma
+    carried = particles.volume[p] * sim.rock.after_failure.carrying_ratio(sim, p) * sigma
     if ti.static(sim.confined):
-        carried += isotropic(sim.confinement * particles.J[p], sigma.n)
-    return particles.volume[p] * carried
+        carried += isotropic(sim.confinement * particles.volume[p] * particles.J[p], sigma.n)
+    return carried
 
 
 @ti.func
