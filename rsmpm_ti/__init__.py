@@ -11,6 +11,8 @@ import sys
 import warnings
 from importlib.util import find_spec
 
+from rsmpm_ti.ctrl_c import leave_in_a_line
+
 __version__ = "0.1.0"
 
 NEEDED = (
@@ -24,7 +26,9 @@ def _is_command() -> bool:
     words = getattr(sys, "orig_argv", [])
     module = words[words.index("-m") + 1 :][:1] if "-m" in words else []
     program = [os.path.splitext(os.path.basename(word))[0] for word in getattr(sys, "argv", [])[:1]]
-    return module[:1] != [] and module[0].split(".")[0] == "rsmpm_ti" or program == ["rsmpm_ti"]
+    archive = os.path.dirname(os.path.dirname(__file__))  # by `python -m zipapp`: a program that is run as it is
+    named = module[:1] != [] and module[0].split(".")[0] == "rsmpm_ti" or program == ["rsmpm_ti"]
+    return named or os.path.isfile(archive) and os.path.abspath(sys.argv[0]) == os.path.abspath(archive)
 
 
 def _end(line: str) -> None:
@@ -33,6 +37,13 @@ def _end(line: str) -> None:
         print(line, file=sys.stderr)
         raise SystemExit(2)
     raise ImportError(line)
+
+
+def _say_that_it_is_no_folder() -> None:
+    """Taichi reads the source of kernels from files, and so do we what ships beside them."""
+    if not os.path.isfile(__file__):
+        place = os.path.dirname(os.path.dirname(__file__))
+        _end(f"rsmpm_ti cannot run from within {place}: it must be installed as files, by `pip install rsmpm_ti`")
 
 
 def _say_what_is_missing() -> None:
@@ -67,6 +78,9 @@ def _say_what_taichi_cannot_read() -> None:
         _end(f"rsmpm_ti: {given} = {os.environ[given]!r} is refused: it must be a locale of this system, as C.UTF-8 is")
 
 
+if _is_command():
+    leave_in_a_line()
+_say_that_it_is_no_folder()
 _say_what_is_missing()
 _say_what_taichi_cannot_read()
 # Taichi greets on standard output when it is imported; a command's output should hold only its own words

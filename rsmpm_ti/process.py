@@ -11,6 +11,7 @@ from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import ParamSpec, TextIO
 
+from rsmpm_ti.ctrl_c import LINE, as_exception
 from rsmpm_ti.errors import SceneError, reason
 
 START = """
@@ -83,9 +84,10 @@ def command(main: Callable[Arguments, int]) -> Callable[Arguments, int]:
         output = Output(sys.stdout)
         with _as_stdout(output):
             try:
-                status = main(*arguments, **keywords)
+                with as_exception():
+                    status = main(*arguments, **keywords)
             except KeyboardInterrupt:
-                tell("rsmpm_ti: stopped by Ctrl-C; what is complete is kept")
+                tell(LINE)
                 status = 128 + signal.SIGINT
             except (SceneError, OSError, MemoryError) as error:
                 tell(f"rsmpm_ti: {reason(error) if not isinstance(error, SceneError) else error}{_place(error)}")

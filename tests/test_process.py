@@ -6,6 +6,7 @@ import os
 import shutil
 import subprocess
 import sys
+import zipapp
 from pathlib import Path
 
 import numpy as np
@@ -13,6 +14,7 @@ import pytest
 from snapshots import snapshot_of
 from writer_orders import NO_ROWS, started
 
+from rsmpm_ti.__main__ import COMMANDS
 from rsmpm_ti.process import no_current_folder
 
 ROOT = Path(__file__).resolve().parent.parent
@@ -57,6 +59,7 @@ seen = lambda: [list(filter(None, sys.path)), list(sys.warnoptions), sys.flags.o
 """
 PARENT = f"""
 import sys
+import zipapp
 sys.path.insert(1, {str(ROOT)!r})
 import subprocess
 from rsmpm_ti.process import python_command
@@ -112,3 +115,47 @@ def test_letters_that_output_does_not_have_are_escaped(tmp_path):
     (tmp_path / "mine.py").write_text(text.replace("title=", 'title="岩 " + ', 1), encoding="utf-8")
     done = shell("PYTHON -m rsmpm_ti.scene mine.py --quick --check", tmp_path, PYTHONIOENCODING="ascii")
     assert done.returncode == 0 and "\nscene       \\u5ca9 " in done.stdout, done.stderr
+
+
+IMPORTING = """
+import os, signal
+from rsmpm_ti.process import command
+{first}
+@command
+def main():
+    {then}
+sys.exit(main())
+"""
+NOW = "os.kill(os.getpid(), signal.SIGINT)"
+LOST = """
+    try:
+        os.kill(os.getpid(), signal.SIGINT)
+    except KeyboardInterrupt:
+        raise ImportError("initialization failed")
+"""
+
+
+@pytest.mark.parametrize("first, then", [(NOW, "pass"), ("", NOW), ("", LOST)], ids=["imports", "main", "C module"])
+def test_ctrl_c_at_any_moment_of_a_command_is_a_line_and_a_status(tmp_path, first, then):
+    (tmp_path / "rsmpm_ti.py").write_text("import sys\ndel sys.path[0]\n" + IMPORTING.format(first=first, then=then))
+    done = shell("PYTHON rsmpm_ti.py; exit $?", tmp_path)
+    assert (done.returncode, done.stderr) == (130, "rsmpm_ti: stopped by Ctrl-C; what is complete is kept\n")
+
+
+def test_ctrl_c_while_a_command_is_imported_is_a_line_and_a_status(tmp_path):
+    """Sent by the first module that is imported after the package itself."""
+    (tmp_path / "lazy_loader.py").write_text(f"import os, signal\n{NOW}\nimport time; time.sleep(9)")
+    for name in COMMANDS:
+        done = shell(f"PYTHON -m rsmpm_ti.{name}; exit $?", tmp_path, PYTHONPATH=f"{tmp_path}:{ROOT}")
+        assert (done.returncode, done.stderr) == (130, "rsmpm_ti: stopped by Ctrl-C; what is complete is kept\n")
+
+
+@pytest.mark.parametrize("how", ["zipapp", "path"])
+def test_a_package_within_an_archive_says_that_it_must_be_files(tmp_path, how):
+    shutil.copytree(ROOT / "rsmpm_ti", tmp_path / "all" / "rsmpm_ti", ignore=shutil.ignore_patterns("__pycache__"))
+    zipapp.create_archive(tmp_path / "all", tmp_path / "x.pyz", main="rsmpm_ti.__main__:main")
+    line, path = ("PYTHON x.pyz", "") if how == "zipapp" else ("PYTHON -m rsmpm_ti.scene --list", tmp_path / "x.pyz")
+    done = shell(line, tmp_path, PYTHONPATH=str(path))
+    assert (done.returncode, done.stdout) == (2, "")
+    said = f"rsmpm_ti cannot run from within {tmp_path / 'x.pyz'}: it must be installed as files, by `pip install "
+    assert done.stderr == f"{said}rsmpm_ti`\n"
