@@ -56,6 +56,16 @@ def _say_what_is_missing() -> None:
         )
 
 
+def _say_what_cannot_start() -> None:
+    """NumPy takes its threads when it is imported, and where it gets none ends a command as Ctrl-C does."""
+    from rsmpm_ti.backend.threads import blas_threads, check_threads
+
+    try:
+        check_threads(blas_threads(), "; or set OPENBLAS_NUM_THREADS=1 in the environment")
+    except ValueError as error:
+        _end(f"rsmpm_ti: {error}")
+
+
 LEVELS = "trace debug info warn error critical off".split()
 SWITCHES = "TI_ENABLE_PYBUF TI_ENABLE_TORCH TI_ENABLE_PADDLE".split()
 
@@ -83,6 +93,8 @@ if _is_command():
 _say_that_it_is_no_folder()
 _say_what_is_missing()
 _say_what_taichi_cannot_read()
+if _is_command():
+    _say_what_cannot_start()
 # Taichi greets on standard output when it is imported; a command's output should hold only its own words
 os.environ.setdefault("ENABLE_TAICHI_HEADER_PRINT", "0")
 # and without a home, as under cron or a service manager, it ends the process by a signal

@@ -16,8 +16,8 @@ ROOT = Path(__file__).resolve().parent.parent
 PACKAGE = ROOT / "rsmpm_ti"
 
 ROOMS = """
-    ctrl_c errors process units checks records backend rock method spec setups fields analysis failure mpm solver paint output
-    run cases verify hardcases study bench scene
+    ctrl_c errors process units checks records backend rock method spec setups fields analysis failure mpm solver paint
+    output run cases verify hardcases study bench scene
 """.split()
 """Ground floor first: a module imports only from rooms to the left of its own, and within its room in no circle."""
 

@@ -8,6 +8,7 @@ import sys
 import warnings
 
 from rsmpm_ti.backend.kernel_cache import ensure_kernel_cache
+from rsmpm_ti.backend.threads import check_run_threads, cores
 from rsmpm_ti.errors import RockWarning, SceneError
 
 _ours: object = None
@@ -28,6 +29,7 @@ if hasattr(os, "register_at_fork"):
 
 def start_taichi(precision: str, arch: str, threads: int | None):
     check_process()
+    check_run_threads(threads, writes=False)
     import taichi as ti
 
     from rsmpm_ti.backend.field_memory import use_field_memory
@@ -45,7 +47,7 @@ def start_taichi(precision: str, arch: str, threads: int | None):
     with contextlib.redirect_stdout(io.StringIO()), by_arguments_alone() as ignored:
         try:
             ti.init(
-                arch=wanted, default_fp=real, cpu_max_num_threads=threads or os.cpu_count() or 1, log_level=ti.ERROR,
+                arch=wanted, default_fp=real, cpu_max_num_threads=threads or cores(), log_level=ti.ERROR,
                 cfg_optimization=False,  # LLVM does the same; its time outgrows the kernel: 20 s for one of 6 s
             )  # fmt: skip
         except RuntimeError as error:  # it reserves a GiB of addresses, for example

@@ -8,6 +8,7 @@ from typing import Any
 
 from rsmpm_ti.analysis.load_curve import FilteredLoad
 from rsmpm_ti.backend.start import start_taichi
+from rsmpm_ti.backend.threads import check_run_threads
 from rsmpm_ti.errors import BrokenApart, ObserverError, RockWarning, SceneError, UnstableRun, reason, refuse, still_kept
 from rsmpm_ti.output.folder import RunFolder, named, prepare
 from rsmpm_ti.records.result import Progress, Result
@@ -64,6 +65,7 @@ def simulate(
         raise refuse("out", out, "the path of a folder, as text or a Path")
     if overwrite and resume:
         raise refuse("overwrite", overwrite, "False with resume", "a run is replaced, or it goes on")
+    check_run_threads(threads, writes=out is not None)
     seeds, kept = scene.particles(), None
     said = review(scene, seeds)
     if out is not None:
