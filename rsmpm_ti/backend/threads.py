@@ -13,6 +13,10 @@ WRITER = 10
 those of BLAS."""
 
 
+BLAS_MOST = 64
+"""What the BLAS in wheels of NumPy and SciPy was built for."""
+
+
 def cores() -> int:
     return os.cpu_count() or 1
 
@@ -20,7 +24,7 @@ def cores() -> int:
 def blas_threads() -> int:
     """Those that NumPy and SciPy start, each its own, when they are imported."""
     said = os.environ.get("OPENBLAS_NUM_THREADS") or os.environ.get("OMP_NUM_THREADS") or ""
-    return 2 * ((int(said) if said.isdigit() else cores()) - 1)
+    return 2 * (min(int(said) if said.isdigit() else cores(), BLAS_MOST) - 1)
 
 
 def run_threads(threads: int | None, writes: bool) -> int:

@@ -30,7 +30,7 @@ RECORD, SUMMARY = "scene.json", "summary.json"
 
 
 class FolderGone(SceneError):
-    """The folder was moved, removed or replaced during the run."""
+    """The folder was moved, removed or replaced during the run, or another run has taken it."""
 
 
 def prepare(
@@ -269,6 +269,10 @@ class RunFolder:
             here = False
         if not here:
             raise FolderGone(f"output folder {self.path} was moved, removed or replaced during the run")
+        try:
+            self.lock.keep()
+        except SceneError as error:
+            raise FolderGone(str(error)) from None
 
     def _check_free(self, name: str) -> None:
         """Refuse a name that is not on the list, and has a file."""
