@@ -11,6 +11,7 @@ import sys
 import warnings
 from importlib.util import find_spec
 
+import rsmpm_ti.backend.forks  # noqa: F401  (a fork from here on is known to be one)
 from rsmpm_ti.ctrl_c import leave_in_a_line
 
 __version__ = "0.1.0"
