@@ -132,7 +132,8 @@ def _check_held(scene) -> None:
         if boundary.held and boundary.stress is not None and loading.width is None:
             raise SceneError(f"loading.width is missing: the force of boundaries[{k}] is its stress over that width")
         if boundary.held and scene.schedule.strain_end is not None:
-            raise SceneError(f"boundaries[{k}] is moved by a force, so strain_end may never come: give t_end")
+            ends = "set strain_end = none and t_end to seconds"
+            raise SceneError(f"boundaries[{k}] is moved by a force, so strain_end may never come: {ends}")
 
 
 def _pulls_away(loading, boundary) -> bool:
