@@ -181,7 +181,7 @@ def test_a_platen_with_a_speed_is_given_a_load_by_what_its_refusal_says(name, va
     assert f"platen.speed = -0.0025 is refused: it must be 0 beside a {name}" in said
     assert "set speed = 0" in said and "strain_end = none and t_end" in said
     still = {"loading.boundaries.1.speed": "0"}
-    assert "set strain_end = none and t_end" in refusal(lambda: load_scene("cube", settings=load | still))
+    assert "give t_end, and set strain_end = none" in refusal(lambda: load_scene("cube", settings=load | still))
     scene = load_scene("cube", settings=load | still | {"strain_end": "none", "t_end": "1 ms"})
     assert scene.loading.boundaries[1].held
     both = {"loading.boundaries.1.stress": "20 MPa", "loading.boundaries.1.force": "20 N/m"}
