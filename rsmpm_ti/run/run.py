@@ -230,6 +230,8 @@ class Run:
         """One step apart, or the first row of a run that goes on, so that compilation is not counted as running."""
         import taichi as ti
 
+        from rsmpm_ti.run.checkpoint import observer_arrays
+
         self.started, self.painting_s, self.steps_before = time.perf_counter(), 0.0, self.clock.step
         if not self.resumed and self.scene.loading.settle:
             self._settle()
@@ -237,6 +239,8 @@ class Run:
                 return
         if not self.resumed:
             self._look(self.view())  # without a row: no force has acted yet
+            if self.writer is not None:  # what no checkpoint can keep is told now, not at the first of them
+                observer_arrays(self.watches)
             self.drive.advance(1)
         elif not self.over:
             self._row()
