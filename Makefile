@@ -52,19 +52,22 @@ lint: $(STAMP)
 	$(RUN) -m mypy
 
 # Each in an environment of its own, built anew: lower bounds of pyproject.toml as they stand, on the oldest Python that is
-# there, and the newest versions within its upper bounds, on the newest Python.
+# there, and the newest versions within its upper bounds, on the newest Python. pyenv's commands work for those of its
+# versions that are switched on: here for all.
 OTHERS = tests/test_cli.py tests/test_door.py tests/analysis tests/output tests/paint tests/spec tests/run/test_run.py
 BOUNDS = sed -n 's/^ *"\([A-Za-z0-9_-]*\)>=\([0-9.]*\),.*/\1==\2/p' pyproject.toml
 
 versions: oldest newest
 
-oldest: TRIED = python3.10 python3.11 python3.12
-newest: TRIED = python3.13 python3.12 python3.11 python3.10
+oldest: TRIED = $(if $(PYTHON),$(PYTHON),python3.10 python3.11 python3.12)
+newest: TRIED = $(if $(PYTHON),$(PYTHON),python3.13 python3.12 python3.11 python3.10)
 
 oldest newest:
 	@rm -rf build/$@ && mkdir -p build
 	@if test $@ = oldest; then $(BOUNDS); fi > build/$@.txt
-	@for python in $(TRIED); do "$$python" -m venv --clear build/$@ >/dev/null 2>&1 && break; done
+	@PYENV_VERSION=`pyenv versions --bare 2>/dev/null | tr '\n' :`; export PYENV_VERSION; \
+	for python in $(TRIED); do "$$python" -m venv --clear build/$@ >/dev/null 2>&1 && exit; done; \
+	echo 'No Python that can make an environment among: $(TRIED)' >&2; exit 1
 	build/$@/bin/python -m pip install --quiet --disable-pip-version-check -c build/$@.txt -e '.[test]'
 	@build/$@/bin/python --version; build/$@/bin/python -m pip list --format freeze
 	build/$@/bin/python -m pytest -n 2 --dist worksteal $(OTHERS) $(ARGS)

@@ -11,6 +11,9 @@ import sys
 import warnings
 from importlib.util import find_spec
 
+import rsmpm_ti.backend.forks  # noqa: F401  (a fork from here on is known to be one)
+from rsmpm_ti.ctrl_c import leave_in_a_line
+
 __version__ = "0.1.0"
 
 NEEDED = (
@@ -24,7 +27,9 @@ def _is_command() -> bool:
     words = getattr(sys, "orig_argv", [])
     module = words[words.index("-m") + 1 :][:1] if "-m" in words else []
     program = [os.path.splitext(os.path.basename(word))[0] for word in getattr(sys, "argv", [])[:1]]
-    return module[:1] != [] and module[0].split(".")[0] == "rsmpm_ti" or program == ["rsmpm_ti"]
+    archive = os.path.dirname(os.path.dirname(__file__))  # by `python -m zipapp`: a program that is run as it is
+    named = module[:1] != [] and module[0].split(".")[0] == "rsmpm_ti" or program == ["rsmpm_ti"]
+    return named or os.path.isfile(archive) and os.path.abspath(sys.argv[0]) == os.path.abspath(archive)
 
 
 def _end(line: str) -> None:
@@ -35,6 +40,13 @@ def _end(line: str) -> None:
     raise ImportError(line)
 
 
+def _say_that_it_is_no_folder() -> None:
+    """Taichi reads the source of kernels from files, and so do we what ships beside them."""
+    if not os.path.isfile(__file__):
+        place = os.path.dirname(os.path.dirname(__file__))
+        _end(f"rsmpm_ti cannot run from within {place}: it must be installed as files, by `pip install rsmpm_ti`")
+
+
 def _say_what_is_missing() -> None:
     """Where a package that everything needs is not installed."""
     missing = [name for name in NEEDED if find_spec(name) is None]
@@ -43,6 +55,16 @@ def _say_what_is_missing() -> None:
             f"rsmpm_ti needs {', '.join(missing)}, which {sys.executable} does not have: use .venv/bin/python, which "
             f"`make` builds in a checkout, or `pip install rsmpm_ti`"
         )
+
+
+def _say_what_cannot_start() -> None:
+    """NumPy takes its threads when it is imported, and where it gets none ends a command as Ctrl-C does."""
+    from rsmpm_ti.backend.threads import blas_threads, check_threads
+
+    try:
+        check_threads(blas_threads(), "; or set OPENBLAS_NUM_THREADS=1 in the environment")
+    except ValueError as error:
+        _end(f"rsmpm_ti: {error}")
 
 
 LEVELS = "trace debug info warn error critical off".split()
@@ -67,8 +89,13 @@ def _say_what_taichi_cannot_read() -> None:
         _end(f"rsmpm_ti: {given} = {os.environ[given]!r} is refused: it must be a locale of this system, as C.UTF-8 is")
 
 
+if _is_command():
+    leave_in_a_line()
+_say_that_it_is_no_folder()
 _say_what_is_missing()
 _say_what_taichi_cannot_read()
+if _is_command():
+    _say_what_cannot_start()
 # Taichi greets on standard output when it is imported; a command's output should hold only its own words
 os.environ.setdefault("ENABLE_TAICHI_HEADER_PRINT", "0")
 # and without a home, as under cron or a service manager, it ends the process by a signal

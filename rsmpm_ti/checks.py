@@ -17,7 +17,7 @@ from pydantic import ConfigDict, TypeAdapter, ValidationError
 from pydantic_core import ArgsKwargs, PydanticCustomError, core_schema
 
 from rsmpm_ti.errors import SceneError, refuse, shown
-from rsmpm_ti.units import Unit
+from rsmpm_ti.units import LEAST_PRESSURE, Unit
 
 MIN_POSITIVE, MAX_SIZE = 1e-12, 1e18
 """Of what must be positive, in SI units: far beyond any specimen, and squares and ratios of such numbers are finite."""
@@ -178,7 +178,32 @@ def refusal(owner: str, kind: type, values, error: ValidationError) -> SceneErro
     cause = first["ctx"]["error"]
     if not isinstance(cause, SceneError):
         return SceneError(f"{position}: {kind.__name__} cannot be built: {cause}")
+    cause = SceneError(f"{cause}{_without_unit(kind, value)}")
     return SceneError(f"{position}: {cause}") if first["loc"] else cause
+
+
+def _without_unit(kind, values) -> str:
+    """What makes a refusal likely: pressures of an object that look like megapascals."""
+    given = values.items() if isinstance(values, dict) else ()
+    small = [f"{name} = {pressure_said(v)}" for name, v in given if too_small(v) and is_pressure(kind, name)]
+    return f"; likely cause: {'; '.join(small)}" if small else ""
+
+
+def is_pressure(kind, name: str) -> bool:
+    """Whether a class of scene data has a field that is a pressure."""
+    unit = unit_of(annotations(kind).get(name))
+    return unit is not None and unit.name == "Pa"
+
+
+def too_small(value) -> bool:
+    """Whether a number is too small for a pressure [Pa] that rock would notice; 0 is a choice."""
+    return type(value) in (int, float) and 0.0 < abs(value) < LEAST_PRESSURE
+
+
+def pressure_said(value: float) -> str:
+    """Of a pressure [Pa] that is too small, what it looks like and what to write."""
+    text = f"{value:g}"
+    return f"{text} Pa looks like MPa: write {f'{value * 1e6:g}' if 'e' in text else f'{text}e6'} or '{text} MPa'"
 
 
 UNKNOWN, MISSING, BY_HAND = "unexpected_keyword_argument", "missing", "value_error"

@@ -3,6 +3,7 @@
 import contextlib
 import errno
 import functools
+import multiprocessing.util
 import os
 import signal
 import subprocess
@@ -11,6 +12,7 @@ from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import ParamSpec, TextIO
 
+from rsmpm_ti.ctrl_c import LINE, as_exception
 from rsmpm_ti.errors import SceneError, reason
 
 START = """
@@ -38,8 +40,14 @@ def python_command(code: str, *arguments: str) -> list[str]:
         init=ascii(str(package / "__init__.py")),
         folder=ascii(str(package)),
     )
+    return [sys.executable, *_alone_flags(), "-c", start + code, *arguments]
+
+
+def _alone_flags() -> list[str]:
+    """Flags of this Python, of a Python that looks for nothing in the current folder, its home or its variables."""
     flags = subprocess._args_from_interpreter_flags()  # type: ignore[attr-defined]  # as multiprocessing does
-    return [sys.executable, *flags, "-I", "-X", f"utf8={sys.flags.utf8_mode}", "-c", start + code, *arguments]
+    compiled = ["-X", f"pycache_prefix={sys.pycache_prefix}"] if sys.pycache_prefix else []
+    return [*flags, "-I", "-X", f"utf8={sys.flags.utf8_mode}", *compiled]
 
 
 def _is_current() -> bool:
@@ -52,16 +60,34 @@ def _is_current() -> bool:
 
 @contextlib.contextmanager
 def no_current_folder() -> Iterator[None]:
-    """Within it, processes of `multiprocessing` do not look for modules in the current folder (from Python 3.11 on)."""
-    before = os.environ.get("PYTHONSAFEPATH")
-    os.environ["PYTHONSAFEPATH"] = "1"
+    """Within it processes of `multiprocessing` start alone (-I); they are told the search path of this one.
+
+    They run `python -c`, which looks in the current folder first, and a Python 3.10 does so whatever its environment
+    says. What keeps count of their semaphores is started in the same way.
+    """
+    before = multiprocessing.util._args_from_interpreter_flags  # type: ignore[attr-defined]
+    multiprocessing.util._args_from_interpreter_flags = _alone_flags  # type: ignore[attr-defined]
     try:
         yield
     finally:
-        if before is None:
-            del os.environ["PYTHONSAFEPATH"]
-        else:
-            os.environ["PYTHONSAFEPATH"] = before
+        multiprocessing.util._args_from_interpreter_flags = before  # type: ignore[attr-defined]
+
+
+@contextlib.contextmanager
+def without_ctrl_c() -> Iterator[None]:
+    """Processes of `multiprocessing` that start within it, from this thread or one that it starts, do not hear Ctrl-C:
+    who started them does, and ends them."""
+    if not hasattr(signal, "pthread_sigmask"):  # Windows
+        yield
+        return
+    from multiprocessing import resource_tracker
+
+    resource_tracker.ensure_running()  # which would let the signal in again
+    before = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
+    try:
+        yield
+    finally:
+        signal.pthread_sigmask(signal.SIG_SETMASK, before)
 
 
 Arguments = ParamSpec("Arguments")
@@ -83,9 +109,10 @@ def command(main: Callable[Arguments, int]) -> Callable[Arguments, int]:
         output = Output(sys.stdout)
         with _as_stdout(output):
             try:
-                status = main(*arguments, **keywords)
+                with as_exception():
+                    status = main(*arguments, **keywords)
             except KeyboardInterrupt:
-                tell("rsmpm_ti: stopped by Ctrl-C; what is complete is kept")
+                tell(LINE)
                 status = 128 + signal.SIGINT
             except (SceneError, OSError, MemoryError) as error:
                 tell(f"rsmpm_ti: {reason(error) if not isinstance(error, SceneError) else error}{_place(error)}")

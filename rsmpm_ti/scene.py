@@ -241,6 +241,7 @@ def run(scene: Scene, options: argparse.Namespace) -> int:
             resume=options.resume, checkpoint_every=options.checkpoint_every, progress=show,
         )  # fmt: skip
     print(report(result))
+    print(f"written to {out}")
     return 128 + result.signal if result.signal else 0
 
 
@@ -281,7 +282,6 @@ def report(result) -> str:
         lines.append(f"stopped early: {result.stopped}; everything up to there is written; go on with --resume")
     elif result.stopped:
         lines.append(result.stopped)
-    lines.append(f"written to {result.out}")
     return "\n".join(lines)
 
 

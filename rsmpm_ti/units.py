@@ -7,6 +7,7 @@ flaw_length=15mm`, is then read as that many metres, and one of another dimensio
 import functools
 import re
 from dataclasses import dataclass
+from decimal import Decimal
 from typing import Annotated
 
 GPa = 1e9
@@ -52,22 +53,82 @@ POWER = re.compile(r"([A-Za-z])(-?\d)")
 """Where pint wants a sign for a power: m2 is m^2."""
 
 
+PERCENTAGE = re.compile(r"([-+]?(?:\d{1,20}\.?\d{0,20}|\.\d{1,20}))\s*%")
+
+LEAST_PRESSURE = 1e3
+"""No stress of rock is smaller [Pa]: a number below it is one in MPa that lost its unit."""
+
+COMMON = {
+    "m": "mm cm um m km in",
+    "m^2": "mm^2 cm^2 m^2",
+    "m^3": "mm^3 cm^3 m^3",
+    "degrees": "deg degrees rad",
+    "s": "us ms s min h",
+    "m/s": "mm/s m/s mm/min",
+    "m/s^2": "mm/s^2 m/s^2",
+    "rad/s": "deg/s rad/s",
+    "Pa": "MPa GPa kPa Pa bar psi",
+    "N/m": "kN/m MN/m N/m N/mm",
+    "N": "kN MN N",
+    "kg/m^3": "kg/m^3 g/cm^3",
+    "J/m^2": "J/m^2 kJ/m^2 N/m N/mm",
+}
+"""Unit of a field -> what is typed for it. Another spelling in capitals and small letters is none of pint's, such as
+mpa, or one that no laboratory has, such as mPa and Mm."""
+
+
 def quantity(text: str, unit: Unit, dim: int = 2) -> float | None:
-    """A text such as `15 mm` as a number in a unit; None where it is no such text or of another dimension."""
+    """A text such as `15 mm` as a number in a unit; None where it is no such text, of another dimension, or a common
+    unit but for capital letters."""
     parts = QUANTITY.fullmatch(text.strip())
-    if parts is None:
+    if parts is None or _meant(parts[2], unit, dim):
         return None
     registry = _registry()
     try:
         given = registry.Quantity(float(parts[1]), registry.parse_units(POWER.sub(r"\1^\2", parts[2])))
     except (AttributeError, ValueError, ArithmeticError):  # pint: no such unit; float: two points
         return None
-    names = unit.name.split(" or ")  # of a unit that depends on the scene's dimension: in 2D, in 3D
-    for name in names[dim - 2 :][:1] if len(names) > 1 else names:
+    for name in _names(unit, dim):
         # the units at the root tell also degrees from pure numbers, and rad/s from Hz: both have no dimension
         if registry.get_root_units(given.units)[1] == registry.get_root_units(name)[1]:
             return float(given.to(name).magnitude)
     return None
+
+
+def percentage(text: str) -> float | None:
+    """A text such as `0.35%` as a pure number, 0.0035; None where it is no such text."""
+    parts = PERCENTAGE.fullmatch(text.strip())
+    return None if parts is None else float(Decimal(parts[1]).scaleb(-2))
+
+
+def advice(text: str, unit: Unit | None, dim: int = 2) -> str:
+    """What to type in place of a number with a unit that a field does not take; "" for any other text. unit: of the
+    field, None for a pure number."""
+    parts = QUANTITY.fullmatch(text.strip())
+    if unit is None:
+        return "it has no unit" if parts else ""
+    if parts is None:
+        return f"give its unit, such as {_common(unit, dim)[0]}" if PERCENTAGE.fullmatch(text.strip()) else ""
+    if meant := _meant(parts[2], unit, dim):
+        return f"capital letters count: did you mean '{parts[1]} {meant}'?"
+    return f"its units are {', '.join(_common(unit, dim))}, and others of that dimension"
+
+
+def _names(unit: Unit, dim: int) -> list[str]:
+    """Of a unit that depends on the scene's dimension (in 2D, in 3D) the one."""
+    names = unit.name.split(" or ")
+    return names[dim - 2 :][:1] if len(names) > 1 else names
+
+
+def _common(unit: Unit, dim: int) -> list[str]:
+    return [word for name in _names(unit, dim) for word in COMMON.get(name, name).split()]
+
+
+def _meant(word: str, unit: Unit, dim: int) -> str:
+    """The common unit that a word would be but for capital letters; "" where it is one as it stands, or none."""
+    word = POWER.sub(r"\1^\2", word)
+    common = _common(unit, dim)
+    return "" if word in common else next((name for name in common if name.lower() == word.lower()), "")
 
 
 @functools.cache

@@ -1,5 +1,7 @@
 """Fixtures that several test files share."""
 
+from functools import partial
+
 import pytest
 import taichi as ti
 
@@ -47,6 +49,12 @@ def restart_taichi():
     """start(real, threads): Taichi again, inside a test; fields are gone at every call. Ends with two threads, f64."""
     yield start
     start(ti.f64)
+
+
+@pytest.fixture
+def as_written(monkeypatch):
+    """Arithmetic as it is written: by default LLVM fuses and reorders it, on some processors not alike in two kernels."""
+    monkeypatch.setattr(ti, "init", partial(ti.init, fast_math=False))
 
 
 TRAVERSALS = {

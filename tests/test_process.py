@@ -1,11 +1,15 @@
 """What processes that the product starts see, and what commands do where their output ends."""
 
+import contextlib
 import json
 import multiprocessing
 import os
 import shutil
+import signal
 import subprocess
 import sys
+import time
+import zipapp
 from pathlib import Path
 
 import numpy as np
@@ -13,6 +17,7 @@ import pytest
 from snapshots import snapshot_of
 from writer_orders import NO_ROWS, started
 
+from rsmpm_ti.__main__ import COMMANDS
 from rsmpm_ti.process import no_current_folder
 
 ROOT = Path(__file__).resolve().parent.parent
@@ -40,14 +45,71 @@ def test_the_process_that_paints_runs_nothing_of_the_current_folder(planted, mon
     assert not (planted / "executed").exists() and (planted / "out" / "summary.png").exists()
 
 
-@pytest.mark.skipif(
-    sys.version_info < (3, 11), reason="Python 3.10 puts the current folder first whoever asks it not to"
-)
 def test_cases_that_run_in_processes_of_their_own_run_nothing_of_the_current_folder(planted):
-    before = dict(os.environ)
-    with no_current_folder(), multiprocessing.get_context("spawn").Pool(1) as pool:
-        assert pool.apply(os.getpid) != os.getpid()
-    assert not (planted / "executed").exists() and dict(os.environ) == before
+    with no_current_folder():
+        with multiprocessing.get_context("spawn").Pool(1) as pool:
+            assert pool.apply(os.getpid) != os.getpid()
+            assert pool.apply(os.getcwd) == str(planted / "planted")
+    assert not (planted / "executed").exists()
+
+
+CASES = """
+import sys
+sys.path[:] = [{root!r}, *sys.path[1:]]
+from pathlib import Path
+from rsmpm_ti.cases.running import run_cases
+if __name__ == "__main__":
+    (finished,) = run_cases("rsmpm_ti.verify.catalogue", ["none"], False, Path("out"), 1, 1)
+    print(finished.problem)
+"""
+
+
+def test_a_case_runs_nothing_of_the_current_folder(planted):
+    """As of the console command, which does not look there either. There is no such case, so it ends at once."""
+    (planted / "program.py").write_text(CASES.format(root=str(ROOT)))
+    done = shell(f"PYTHON {planted / 'program.py'}", planted / "planted", PYTHONPATH="")
+    assert done.stdout == "KeyError: 'none'\n", done.stderr
+    assert not (planted / "executed").exists()
+
+
+HEARS = """
+import multiprocessing, os, signal, sys
+sys.path.insert(0, {root!r})
+from pathlib import Path
+from rsmpm_ti.process import no_current_folder, without_ctrl_c
+def blocked():
+    return signal.SIGINT in signal.pthread_sigmask(signal.SIG_BLOCK, [])
+if __name__ == "__main__":
+    with no_current_folder():
+        with without_ctrl_c():
+            pool = multiprocessing.get_context("spawn").Pool(1, maxtasksperchild=1)
+        with pool:
+            print(blocked(), [pool.apply(blocked) for _ in range(2)])
+"""
+
+
+@pytest.mark.skipif(not hasattr(signal, "pthread_sigmask"), reason="no signals for groups of processes")
+def test_ctrl_c_is_for_the_process_that_waits_for_others(tmp_path):
+    (tmp_path / "program.py").write_text(HEARS.format(root=str(ROOT)))
+    assert shell("PYTHON program.py", tmp_path).stdout == "False [True, True]\n"
+
+
+@pytest.mark.skipif(not hasattr(signal, "pthread_sigmask"), reason="no signals for groups of processes")
+def test_ctrl_c_ends_a_command_that_spreads_cases_at_once(tmp_path):
+    """More cases than run at a time: those that wait do not begin."""
+    command = [sys.executable, "-m", "rsmpm_ti.verify", "--jobs", "1", "--out", str(tmp_path)]
+    environment = os.environ | {"PYTHONPATH": str(ROOT), "PYTHONUNBUFFERED": "1"}
+    pipes = {"stdout": subprocess.PIPE, "stderr": subprocess.PIPE, "text": True}
+    with subprocess.Popen(command, env=environment, cwd=tmp_path, start_new_session=True, **pipes) as run:
+        assert run.stdout.readline()
+        time.sleep(0.5)
+        os.killpg(run.pid, signal.SIGINT)
+        try:
+            said = run.communicate(timeout=10)[1]
+        finally:
+            with contextlib.suppress(ProcessLookupError):
+                os.killpg(run.pid, signal.SIGKILL)
+    assert (run.returncode, said) == (130, "rsmpm_ti: stopped by Ctrl-C; what is complete is kept\n")
 
 
 SEEN = """
@@ -57,6 +119,7 @@ seen = lambda: [list(filter(None, sys.path)), list(sys.warnoptions), sys.flags.o
 """
 PARENT = f"""
 import sys
+import zipapp
 sys.path.insert(1, {str(ROOT)!r})
 import subprocess
 from rsmpm_ti.process import python_command
@@ -112,3 +175,47 @@ def test_letters_that_output_does_not_have_are_escaped(tmp_path):
     (tmp_path / "mine.py").write_text(text.replace("title=", 'title="岩 " + ', 1), encoding="utf-8")
     done = shell("PYTHON -m rsmpm_ti.scene mine.py --quick --check", tmp_path, PYTHONIOENCODING="ascii")
     assert done.returncode == 0 and "\nscene       \\u5ca9 " in done.stdout, done.stderr
+
+
+IMPORTING = """
+import os, signal
+from rsmpm_ti.process import command
+{first}
+@command
+def main():
+    {then}
+sys.exit(main())
+"""
+NOW = "os.kill(os.getpid(), signal.SIGINT)"
+LOST = """
+    try:
+        os.kill(os.getpid(), signal.SIGINT)
+    except KeyboardInterrupt:
+        raise ImportError("initialization failed")
+"""
+
+
+@pytest.mark.parametrize("first, then", [(NOW, "pass"), ("", NOW), ("", LOST)], ids=["imports", "main", "C module"])
+def test_ctrl_c_at_any_moment_of_a_command_is_a_line_and_a_status(tmp_path, first, then):
+    (tmp_path / "rsmpm_ti.py").write_text("import sys\ndel sys.path[0]\n" + IMPORTING.format(first=first, then=then))
+    done = shell("PYTHON rsmpm_ti.py; exit $?", tmp_path)
+    assert (done.returncode, done.stderr) == (130, "rsmpm_ti: stopped by Ctrl-C; what is complete is kept\n")
+
+
+def test_ctrl_c_while_a_command_is_imported_is_a_line_and_a_status(tmp_path):
+    """Sent by the first module that is imported after the package itself."""
+    (tmp_path / "lazy_loader.py").write_text(f"import os, signal\n{NOW}\nimport time; time.sleep(9)")
+    for name in COMMANDS:
+        done = shell(f"PYTHON -m rsmpm_ti.{name}; exit $?", tmp_path, PYTHONPATH=f"{tmp_path}:{ROOT}")
+        assert (done.returncode, done.stderr) == (130, "rsmpm_ti: stopped by Ctrl-C; what is complete is kept\n")
+
+
+@pytest.mark.parametrize("how", ["zipapp", "path"])
+def test_a_package_within_an_archive_says_that_it_must_be_files(tmp_path, how):
+    shutil.copytree(ROOT / "rsmpm_ti", tmp_path / "all" / "rsmpm_ti", ignore=shutil.ignore_patterns("__pycache__"))
+    zipapp.create_archive(tmp_path / "all", tmp_path / "x.pyz", main="rsmpm_ti.__main__:main")
+    line, path = ("PYTHON x.pyz", "") if how == "zipapp" else ("PYTHON -m rsmpm_ti.scene --list", tmp_path / "x.pyz")
+    done = shell(line, tmp_path, PYTHONPATH=str(path))
+    assert (done.returncode, done.stdout) == (2, "")
+    said = f"rsmpm_ti cannot run from within {tmp_path / 'x.pyz'}: it must be installed as files, by `pip install "
+    assert done.stderr == f"{said}rsmpm_ti`\n"

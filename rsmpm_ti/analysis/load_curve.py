@@ -22,7 +22,7 @@ MIN_FILTER_ROWS = 3
 def filter_rows(scene: Scene) -> int:
     """Rows, an odd number, over which the load of a scene is filtered."""
     loading, rows = scene.loading, 0.0
-    if loading.platens is not None:
+    if loading.ends is not None:
         interval = scene.dt * scene.row_steps
         rows = FILTER_TRANSITS * loading.height / scene.wave_speed / interval
     return max(MIN_FILTER_ROWS, 2 * math.floor(0.5 * rows) + 1)

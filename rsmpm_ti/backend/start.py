@@ -3,31 +3,20 @@
 import contextlib
 import gc
 import io
-import os
-import sys
 import warnings
 
+from rsmpm_ti.backend.forks import is_fork, runtime
 from rsmpm_ti.backend.kernel_cache import ensure_kernel_cache
+from rsmpm_ti.backend.threads import check_run_threads, cores
 from rsmpm_ti.errors import RockWarning, SceneError
 
 _ours: object = None
 """The runtime of Taichi that was started here; a user may have started another."""
 
-_forked = False
-"""Whether this process is the fork of one in which Taichi ran: its threads are gone, and it would wait for them."""
-
-
-def _mark_fork() -> None:
-    global _forked
-    _forked = _forked or _runtime() is not None
-
-
-if hasattr(os, "register_at_fork"):
-    os.register_at_fork(after_in_child=_mark_fork)
-
 
 def start_taichi(precision: str, arch: str, threads: int | None):
     check_process()
+    check_run_threads(threads, writes=False)
     import taichi as ti
 
     from rsmpm_ti.backend.field_memory import use_field_memory
@@ -45,7 +34,7 @@ def start_taichi(precision: str, arch: str, threads: int | None):
     with contextlib.redirect_stdout(io.StringIO()), by_arguments_alone() as ignored:
         try:
             ti.init(
-                arch=wanted, default_fp=real, cpu_max_num_threads=threads or os.cpu_count() or 1, log_level=ti.ERROR,
+                arch=wanted, default_fp=real, cpu_max_num_threads=threads or cores(), log_level=ti.ERROR,
                 cfg_optimization=False,  # LLVM does the same; its time outgrows the kernel: 20 s for one of 6 s
             )  # fmt: skip
         except RuntimeError as error:  # it reserves a GiB of addresses, for example
@@ -64,25 +53,18 @@ def start_taichi(precision: str, arch: str, threads: int | None):
 
 def check_process() -> None:
     """Raises SceneError where starting Taichi would never end, or take memory away that others use."""
-    if _forked:
+    if is_fork():
         raise SceneError(
             "this process is the fork of one in which Taichi ran, and Taichi does not survive a fork: start it anew, "
             "by multiprocessing.get_context('spawn')"
         )
-    runtime = _runtime()
+    found = runtime()
     # fields that wait for their memory, and pieces of memory that have been given to fields
-    if runtime not in (None, _ours) and (runtime.global_vars or runtime.prog.get_snode_tree_size()):
+    if found not in (None, _ours) and (found.global_vars or found.prog.get_snode_tree_size()):
         raise SceneError(
             "Taichi holds fields of your own in this process, and a run frees them: call ti.reset() if they are not "
             "needed any more, or run in a process of its own, by multiprocessing.get_context('spawn')"
         )
-
-
-def _runtime():
-    """Of a Taichi that has been started in this process; else None."""
-    ti = sys.modules.get("taichi")
-    runtime = ti.lang.impl.get_runtime() if hasattr(ti, "lang") else None
-    return None if getattr(runtime, "prog", None) is None else runtime
 
 
 class Freed:

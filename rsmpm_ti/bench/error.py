@@ -9,7 +9,7 @@ from pathlib import Path
 from rsmpm_ti.bench.measures import Measure, measure
 from rsmpm_ti.bench.pareto import Entry, pareto, recommendations
 from rsmpm_ti.bench.sweep import CELLS, SHAPES, Setting, sweep
-from rsmpm_ti.process import no_current_folder
+from rsmpm_ti.process import no_current_folder, without_ctrl_c
 from rsmpm_ti.records.files import complete, write_csv
 
 CSV_NAME, PICTURE_NAME = "speed_vs_error.csv", "speed_vs_error.png"
@@ -44,15 +44,18 @@ def run_sweep(cases: list[str], finest: bool, jobs: int, out: Path) -> list[Entr
         write_csv(path, [*NAMES, "error", "wall_s", "particle_steps"], (_row(*entry) for entry in entries))
 
     save()
-    with no_current_folder(), multiprocessing.get_context("spawn").Pool(jobs, maxtasksperchild=8) as pool:
-        for k, (setting, m, problem) in enumerate(pool.imap_unordered(_work, settings), 1):
-            head = f"{k}/{len(settings)} {setting.case} {setting.cells}: {setting.scheme}"
-            if m is None:
-                print(f"{head}: broke: {problem}", flush=True)
-                continue
-            print(f"{head}: error {100 * m.error:.3g} %, {m.wall_s:.2f} s", flush=True)
-            entries.append((setting, m))
-            save()
+    with no_current_folder():
+        with without_ctrl_c():
+            pool = multiprocessing.get_context("spawn").Pool(jobs, maxtasksperchild=8)
+        with pool:
+            for k, (setting, m, problem) in enumerate(pool.imap_unordered(_work, settings), 1):
+                head = f"{k}/{len(settings)} {setting.case} {setting.cells}: {setting.scheme}"
+                if m is None:
+                    print(f"{head}: broke: {problem}", flush=True)
+                    continue
+                print(f"{head}: error {100 * m.error:.3g} %, {m.wall_s:.2f} s", flush=True)
+                entries.append((setting, m))
+                save()
     order = list(CELLS)
     return sorted(entries, key=lambda entry: order.index(entry[0].case))
 

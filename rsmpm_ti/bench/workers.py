@@ -11,7 +11,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 
 from rsmpm_ti.bench.sweep import SHAPES
-from rsmpm_ti.process import no_current_folder
+from rsmpm_ti.process import no_current_folder, without_ctrl_c
 
 WIDTHS = {"linear": 2, "bspline": 3}
 """Shape functions that the twins know, and their nodes per axis."""
@@ -116,7 +116,7 @@ class Workers:
         context = multiprocessing.get_context("spawn")
         here, there = context.Pipe()
         process = context.Process(target=_serve, args=(there, runner.precision, runner.threads), daemon=True)
-        with no_current_folder():
+        with no_current_folder(), without_ctrl_c():
             process.start()
         self._processes.append(process)
         return here

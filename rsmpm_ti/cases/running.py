@@ -1,6 +1,5 @@
 """Run cases: one in this process, or several at a time in processes of their own."""
 
-import contextlib
 import importlib
 import multiprocessing
 import time
@@ -11,7 +10,7 @@ from pathlib import Path
 
 from rsmpm_ti.cases.case import Case, Row
 from rsmpm_ti.cases.report import draw
-from rsmpm_ti.process import no_current_folder
+from rsmpm_ti.process import no_current_folder, without_ctrl_c
 
 
 @dataclass(frozen=True)
@@ -54,8 +53,17 @@ def run_cases(catalogue: str, names: list[str], full: bool, out: Path, jobs: int
     """Each case in a process of its own, `jobs` at a time: Taichi's memory of one never meets the next."""
     tasks = [(catalogue, name, full, out, threads) for name in names]
     with no_current_folder(), ThreadPoolExecutor(jobs) as pool:
-        for done in as_completed([pool.submit(_alone, task) for task in tasks]):
-            yield done.result()
+        begun = [pool.submit(_alone, task) for task in tasks]
+        try:
+            for done in as_completed(begun):
+                yield done.result()
+        except BaseException:  # Ctrl-C, for one: nobody wants what is still to come
+            pool.shutdown(wait=False, cancel_futures=True)
+            while not all(done.done() for done in begun):
+                for process in multiprocessing.active_children():
+                    process.kill()
+                time.sleep(0.01)
+            raise
 
 
 def _alone(task: tuple) -> Finished:
@@ -63,7 +71,8 @@ def _alone(task: tuple) -> Finished:
     context, start = multiprocessing.get_context("spawn"), time.perf_counter()
     receiver, sender = context.Pipe(duplex=False)
     process = context.Process(target=_answer, args=(sender, task), daemon=True)
-    process.start()
+    with without_ctrl_c():
+        process.start()
     sender.close()
     try:
         return receiver.recv()
@@ -76,5 +85,4 @@ def _alone(task: tuple) -> Finished:
 
 
 def _answer(sender, task: tuple) -> None:
-    with contextlib.suppress(KeyboardInterrupt):  # it is for the process that waits
-        sender.send(_work(task))
+    sender.send(_work(task))

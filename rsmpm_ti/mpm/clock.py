@@ -32,8 +32,8 @@ class Clock:
 
     @property
     def strain(self) -> float:
-        """How far the platens have come closer, over their distance; NaN without a pair of them."""
-        pair = self._sim.scene.loading.platens
+        """How far the ends of the load have come closer, over their distance; NaN where no two face each other."""
+        pair = self._sim.scene.loading.ends
         if pair is None:
             return math.nan
         lower, upper = self._sim.grid.gone()[pair[0].axis]

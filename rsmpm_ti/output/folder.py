@@ -30,7 +30,7 @@ RECORD, SUMMARY = "scene.json", "summary.json"
 
 
 class FolderGone(SceneError):
-    """The folder was moved, removed or replaced during the run."""
+    """The folder was moved, removed or replaced during the run, or another run has taken it."""
 
 
 def prepare(
@@ -56,7 +56,9 @@ def prepare(
         raise refuse("name", name, "a name that a file can have", "the movie is called by it")
     folder = None
     try:
-        folder = RunFolder(Path(out), name, record(scene, name, precision), overwrite and not resume)
+        # absolute: a callback of the user may change the current folder
+        renews = overwrite and not resume and Path(out) == RENDERS / name
+        folder = RunFolder(Path(out).absolute(), record(scene, name, precision), renews)
         folder.check(names_of(scene, name), overwrite, resume)
     except BaseException as error:
         if folder is not None:
@@ -88,7 +90,8 @@ def record(scene: Scene, name: str, precision: str) -> bytes:
 class RunFolder:
     """The folder of one run; `prepare` makes it, `release` gives it back."""
 
-    def __init__(self, path: Path, name: str, record: bytes, overwrite: bool):
+    def __init__(self, path: Path, record: bytes, renews: bool):
+        """path: absolute; renews: it is the default one, in which everything is a run's."""
         self.path, self.begun = path, False
         self._record = record
         self._made = [folder for folder in (path, *path.parents) if not folder.exists()]
@@ -108,9 +111,8 @@ class RunFolder:
             self._manifest = manifest.read(path)
             self._names = set(self._manifest.names) if self._manifest else set()
             self._previous = previous_of(path)
-            # everything may be moved as it is: the default folder, filled by a version without lists
-            default = overwrite and path == RENDERS / name
-            self._all_aside = default and self._manifest is None and is_file(path, RECORD)
+            # everything may be moved as it is: filled by a version without lists
+            self._all_aside = renews and self._manifest is None and is_file(path, RECORD)
         except BaseException:
             self.release()
             raise
@@ -128,7 +130,7 @@ class RunFolder:
             return
         if self._manifest is None and mode_of(part_of(self.path / manifest.FILE)):
             raise SceneError(f"{part_of(self.path / manifest.FILE)} is in the way, no run has made it: {REMEDY}")
-        beside = os.stat(self.path.absolute().parent)
+        beside = os.stat(self.path.parent)
         if self._manifest is not None and overwrite and beside.st_dev != self._place.st_dev:
             remedy = "the run before is kept beside it, and files do not move between disks; give a folder in it"
             raise refuse("out", str(self.path), "no disk of its own", remedy)
@@ -267,6 +269,10 @@ class RunFolder:
             here = False
         if not here:
             raise FolderGone(f"output folder {self.path} was moved, removed or replaced during the run")
+        try:
+            self.lock.keep()
+        except SceneError as error:
+            raise FolderGone(str(error)) from None
 
     def _check_free(self, name: str) -> None:
         """Refuse a name that is not on the list, and has a file."""

@@ -4,6 +4,7 @@ The process that paints holds it too: where the solver is killed, the folder is 
 `fcntl` and not with `filelock`: that one can neither be handed to a child nor say who holds it.
 """
 
+import contextlib
 import errno
 import os
 import re
@@ -44,8 +45,9 @@ class Lock:
             if _lives(process) or time.monotonic() > patience:
                 raise self._held(process, since)
             time.sleep(POLL_S)
+        self._line = f"process {os.getpid()} since {time.strftime('%Y-%m-%d %H:%M:%S')}\n".encode()
         try:
-            os.write(self.descriptor, f"process {os.getpid()} since {time.strftime('%Y-%m-%d %H:%M:%S')}\n".encode())
+            os.write(self.descriptor, self._line)
         except OSError:  # a full disk
             self.release()
             raise
@@ -54,6 +56,36 @@ class Lock:
     def passed(self) -> tuple[int, ...]:
         """Descriptors that a child process is to be given."""
         return () if fcntl is None else (self.descriptor,)
+
+    def keep(self) -> None:
+        """To be called before something is written: puts the lock's file back where it was removed and nobody has taken
+        the folder since; else raises SceneError. The painter goes on holding the one before, and looks at the name in
+        the new one."""
+        if self._is(self.descriptor):
+            return
+        descriptor = None
+        try:
+            flags = os.O_RDWR | os.O_CREAT | NOT_BEYOND
+            descriptor = os.open(self._path, flags | (os.O_EXCL if fcntl is None else 0), 0o644)
+            if fcntl is not None:
+                fcntl.flock(descriptor, fcntl.LOCK_EX | fcntl.LOCK_NB)
+            if os.read(descriptor, 100) not in (b"", self._line) or not self._is(descriptor):
+                raise FileExistsError
+        except OSError:
+            if descriptor is not None:
+                os.close(descriptor)
+            raise self._lost() from None
+        with contextlib.suppress(OSError):  # a full disk: it is locked, if it does not say by whom
+            os.pwrite(descriptor, self._line, 0)
+        os.close(self.descriptor)
+        self.descriptor = descriptor
+
+    def _lost(self) -> SceneError:
+        process, since = self._holder()
+        who = f"process {process} has the folder since {since}" if process else "something else has its place"
+        return SceneError(
+            f"the lock {FILE} of {self._folder} was removed during the run, and {who}: nothing more is written there"
+        )
 
     def _take(self) -> int | None:
         """A descriptor of a new file that is locked; None while another process has it."""
@@ -94,13 +126,7 @@ class Lock:
             return False
 
     def _holder(self) -> tuple[int, str]:
-        """Process and start of who made the lock; 0 where the file does not say."""
-        try:
-            with open(os.open(self._path, os.O_RDONLY | NOT_BEYOND), "rb") as file:
-                words = re.match(rb"process (\d{1,9}) since ([0-9: -]{19})\n", file.read(100) or b"")
-        except OSError:
-            words = None
-        return (0, "") if words is None else (int(words[1]), words[2].decode())
+        return holder(self._folder)
 
     def _foreign(self) -> SceneError:
         return SceneError(f"{self._path} is no lock of a run; move it away, or give another folder with --out")
@@ -126,6 +152,16 @@ class Lock:
 
     def __exit__(self, *_) -> None:
         self.release()
+
+
+def holder(folder: Path) -> tuple[int, str]:
+    """Process and start of who made the lock of a folder; 0 where its file is not there, or does not say."""
+    try:
+        with open(os.open(folder / FILE, os.O_RDONLY | NOT_BEYOND), "rb") as file:
+            words = re.match(rb"process (\d{1,9}) since ([0-9: -]{19})\n", file.read(100) or b"")
+    except OSError:
+        words = None
+    return (0, "") if words is None else (int(words[1]), words[2].decode())
 
 
 def _lives(process: int) -> bool:

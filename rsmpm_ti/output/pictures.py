@@ -6,6 +6,7 @@ from pathlib import Path
 
 import numpy as np
 
+from rsmpm_ti.fields.side_motion import held_sides
 from rsmpm_ti.rock.criteria import MohrCoulomb
 from rsmpm_ti.spec.scene import Scene
 
@@ -71,20 +72,33 @@ def stress_limit(scene: Scene, load: float | None) -> float:
     return 0.1 * load if load else 1e6
 
 
+OVERSHOOT = 2.0
+"""Times the strain under a force that the same force makes when it comes at once."""
+
+
+def _most_factor(scene: Scene) -> float:
+    """Of a held load, within a run."""
+    return max(abs(scene.loading.start.factor(time)) for time in np.linspace(0.0, scene.t_end, 1001))
+
+
 def load_limits(scene: Scene, volume: float) -> tuple[float | None, float | None]:
-    """Ends of the inset's axes: the last strain, and the nominal stress of a uniformly strained body of this volume.
+    """Ends of the inset's axes: the last strain, or under a held force the largest, and the nominal stress of a
+    uniformly strained body of this volume.
 
     That is an upper bound of the elastic load (Voigt); the strength bounds it too. Confinement adds its pressure.
     """
     cell = scene.loading.load_cell
-    if scene.loading.platens is None or cell is None or cell.width is None:
+    if scene.loading.ends is None or cell is None or cell.width is None:
         return None, None
     strain = abs(scene.schedule.strain_end or scene.loading.strain_rate * scene.t_end)
-    if strain == 0.0:  # platens that stand still
-        return None, None
     modulus = scene.rock.elasticity.uniaxial_modulus(scene.dim)
-    load = modulus * strain * volume / (scene.loading.height * cell.width)
-    load += scene.loading.confinement
+    stiffness = modulus * volume / (scene.loading.height * cell.width)
+    held = [abs(side.force) for side in held_sides(scene) if side.axis == scene.loading.ends[0].axis]
+    if held:
+        strain = max(strain, OVERSHOOT * max(held) * _most_factor(scene) / cell.width / stiffness)
+    if strain == 0.0:  # ends that stand still
+        return None, None
+    load = stiffness * strain + scene.loading.confinement
     if isinstance(scene.rock.criterion, MohrCoulomb):
         load = min(load, 1.05 * scene.rock.criterion.strength(scene.loading.confinement))
     return strain, load

@@ -21,7 +21,6 @@ import threading
 import time
 from collections.abc import Callable
 from concurrent.futures import Future, ThreadPoolExecutor
-from dataclasses import replace
 
 import numpy as np
 
@@ -59,7 +58,6 @@ class Writer:
         self._kinds, self._movie = wanted.kinds, (f"{wanted.name}.mp4",) if wanted.movie else ()
         self._hurried = hurried
         try:
-            wanted = replace(wanted, out=wanted.out.absolute())
             self._errors = tempfile.TemporaryFile()
             self._child = subprocess.Popen(
                 python_command(CHILD),

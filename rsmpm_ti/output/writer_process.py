@@ -14,6 +14,7 @@ from typing import Any
 
 from rsmpm_ti.backend.start import start_taichi
 from rsmpm_ti.output.files import COLLECTION, write_checkpoint, write_pvd, write_vtu
+from rsmpm_ti.output.lock import holder
 from rsmpm_ti.output.manifest import FRAMES
 from rsmpm_ti.output.writer import ALIVE, READY, REPORT
 
@@ -23,6 +24,8 @@ NICENESS = 10
 WAITING = 8
 """Painted frames, VTU files and checkpoints that may wait for the thread that writes them."""
 
+NOBODY = (0, "")
+"""Of a lock that was removed: the solver puts it back, or ends."""
 
 SIGN_S = 1.0
 """Seconds between two signs of life, which say that this process is neither stopped nor starved."""
@@ -39,7 +42,7 @@ class Desk:
     def open(self, wanted) -> None:
         from rsmpm_ti.output.gallery import Gallery
 
-        self.out = wanted.out
+        self.out, self._holder = wanted.out, holder(wanted.out)
         start_taichi("f64", "cpu", 1)
         self.gallery = Gallery(wanted)
         print(READY, flush=True)
@@ -81,6 +84,8 @@ class Desk:
             found = os.lstat(folder)
             if self._places.setdefault(folder, (found.st_dev, found.st_ino)) != (found.st_dev, found.st_ino):
                 raise OSError(errno.ESTALE, "it was moved, removed or replaced during the run", str(folder))
+        if holder(self.out) not in (self._holder, NOBODY):
+            raise OSError(errno.ESTALE, "its lock was removed during the run, and another has it", str(self.out))
         work(*arguments)
 
     def _settle(self, most: int) -> None:

@@ -80,7 +80,7 @@ class Encoder:
             if self._process.wait(PATIENCE) != 0:
                 raise OSError
             if self._path.is_symlink() or not self._path.is_file():
-                raise OSError(f"{self._path.name} is no file")
+                raise RuntimeError(f"its encoder left {self._path}, which is no file: remove it")
             with open(self._path, "rb") as file:
                 if file.read(8)[4:] != b"ftyp":  # with which an mp4 begins (ISO/IEC 14496-12, 4.3)
                     raise OSError(f"{self._path.name} is no movie")

@@ -42,17 +42,26 @@ class Movie:
             return None
         self._encoder.close()
         self._encoder = None
-        self._file.close()
+        try:
+            self._file.close()
+        except IsADirectoryError:
+            raise RuntimeError(f"{self.path} has become a folder: remove it") from None
         return self.path
 
     def discard(self) -> None:
-        """Gives the movie up, where it cannot be finished, and removes what there is of it; never raises."""
+        """Gives the movie up, where it cannot be finished, and removes what there is of it; never raises.
+
+        A folder that the encoder has left in place of its file goes only if it is empty.
+        """
         if self._encoder is not None:
             self._encoder.kill()
         self._encoder = None
-        with contextlib.suppress(OSError):
-            if self._part is not None:
+        if self._part is not None:
+            with contextlib.suppress(OSError):
                 self._part.unlink(missing_ok=True)
+            with contextlib.suppress(OSError):
+                self._part.rmdir()
+            with contextlib.suppress(OSError):
                 self._file.close()
 
 

@@ -45,7 +45,7 @@ def summary_picture(
 ) -> Path:
     """Writes a picture, 900 pixels high, from the whole history and the last snapshot; returns its path.
 
-    `painter` is the run's painter of crack frames. Where no strain was recorded, counts are drawn over time. lines: of
+    `painter` is the run's painter of crack frames. Where no strain was recorded, all is drawn over time. lines: of
     cracks, each [k, 2] [m], drawn over the pattern, the longest with their lengths; acoustic: times of acoustic events,
     ascending [s], drawn as their number so far; peak: the pattern at the largest load, drawn beside the last one where
     it is another, with its own lines.
@@ -77,18 +77,17 @@ def _curve(axes, history: np.ndarray, wording: Wording, acoustic: np.ndarray) ->
     tension, shear = (tuple(c / 255.0 for c in colour) for colour in (crack_palette().tension, crack_palette().shear))
     handles = []
     counts = axes
-    across = history["time_s"] * 1e3
-    axes.set_xlabel("time [ms]", fontsize=14)
-    loaded = np.isfinite(strain * load)
-    if loaded.any():
-        across = strain * 100.0
+    across, unit, name = history["time_s"] * 1e3, "ms", "time [ms]"
+    if np.isfinite(strain * load).any():
+        across, unit, name = strain * 100.0, "%", wording.inset_x
+    axes.set_xlabel(name, fontsize=14)
+    if np.isfinite(load).any():
         peak = int(np.nanargmax(np.abs(load)))  # a test in tension has one too
         handles += axes.plot(across, load * MEGA, color="#333333", linewidth=2.0, label=wording.inset_y)
         axes.plot(across[peak], load[peak] * MEGA, "o", color="#333333")
         fallen = np.nanmin(load[peak:]) < (1.0 - PEAK_DROP) * load[peak]
-        note = f"{'peak' if fallen else 'largest so far'} {load[peak] * MEGA:.2f} MPa at {across[peak]:.3f} %"
+        note = f"{'peak' if fallen else 'largest so far'} {load[peak] * MEGA:.2f} MPa at {across[peak]:.3f} {unit}"
         axes.set_title(note, fontsize=14, loc="left")
-        axes.set_xlabel(wording.inset_x, fontsize=14)
         axes.set_ylabel(f"{wording.inset_y}   (compression positive)", fontsize=14)
         axes.set_xlim(left=min(0.0, float(np.nanmin(across))))
         axes.set_ylim(bottom=min(0.0, 1.05 * float(np.nanmin(load)) * MEGA))

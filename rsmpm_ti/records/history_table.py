@@ -21,8 +21,8 @@ HISTORY = Table(
             value=lambda view: view.true_time,
         ),
         Column(
-            name="axial_strain", unit="1", about="nominal strain: how far the platens have closed in, over their "
-            "distance; compression positive",
+            name="axial_strain", unit="1", about="nominal strain: how far the platens, or a platen and what "
+            "faces it, have closed in, over their distance; compression positive",
             value=lambda view: view.strain,
         ),
         Column(

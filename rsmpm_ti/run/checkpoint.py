@@ -19,7 +19,8 @@ from rsmpm_ti.output.folder import RunFolder
 from rsmpm_ti.run.kept.contents import Contents
 from rsmpm_ti.run.kept.layout import MOST_TEXT, OBSERVERS, check_layout
 from rsmpm_ti.run.kept.observers import check_progress
-from rsmpm_ti.run.kept.reading import StoredArrays, find_file, need
+from rsmpm_ti.run.kept.reading import MOST_ARRAYS, StoredArrays, find_file, need
+from rsmpm_ti.run.kept.states import Unkept, divided
 from rsmpm_ti.run.settings import Settings
 from rsmpm_ti.solver.observer import Observer, Watch
 from rsmpm_ti.solver.outflow import Dropped
@@ -113,34 +114,32 @@ def restore(arrays: dict[str, np.ndarray], drive, history) -> dict:
     return json.loads(str(arrays["text"]))["progress"]
 
 
-def _native(value):
-    """A scalar of NumPy as Python's own."""
-    if isinstance(value, np.generic):
-        return value.item()
-    raise TypeError(f"{type(value).__name__} is none of them")
-
-
 def observer_arrays(watches: list[Watch]) -> tuple[list[dict], dict[str, np.ndarray]]:
-    """What observers remember: a plain part for each, and arrays by names that say whose they are."""
+    """What observers remember: a plain part for each, and arrays by numbers that say whose they are: a file's own names
+    hold neither NUL nor much. Raises ObserverError for what would not come back."""
     parts: list[dict] = []
     arrays: dict[str, np.ndarray] = {}
+    size = 0
     for k, watch in enumerate(watches):
         state = watch.state()
-        found = {name: value for name, value in state["own"].items() if isinstance(value, np.ndarray)}
-        rest = {name: value for name, value in state["own"].items() if name not in found}
         try:
-            rest = json.loads(json.dumps(rest, allow_nan=True, default=_native))
-            problem = next((name for name in found if not isinstance(name, str) or found[name].dtype.hasobject), None)
-        except (TypeError, ValueError) as error:
-            problem = error
-        if problem is not None:
-            wanted = "numbers, texts, lists and dicts of them, and NumPy arrays of numbers"
-            raise ObserverError(f"observer {watch.name}: state() may hold {wanted} ({problem})")
-        arrays |= {f"{OBSERVERS}{k}_{name}": value for name, value in found.items()}
+            rest, found = divided(state["own"])
+        except Unkept as problem:
+            raise ObserverError(f"observer {watch.name}: {problem}; a state may hold {WANTED}") from None
+        arrays |= {f"{OBSERVERS}{k}_{n}": values for n, values in enumerate(found.values())}
         parts.append({"next": state["next"], "own": rest, "arrays": list(found)})
-        if len(json.dumps(rest)) > MOST_TEXT // 2:
+        size += len(json.dumps(parts[-1]))
+        if size > MOST_TEXT // 2:  # of all together, which are one text
             raise ObserverError(f"observer {watch.name}: state() holds too many numbers in lists; use NumPy arrays")
+        if len(arrays) > MOST_ARRAYS // 2:
+            raise ObserverError(
+                f"observer {watch.name}: state() holds {len(found)} arrays, and a checkpoint at most "
+                f"{MOST_ARRAYS // 2}; join them to larger ones"
+            )
     return parts, arrays
+
+
+WANTED = "numbers, texts, None, lists and dicts of them, and beside these NumPy arrays of numbers or texts"
 
 
 def restore_observers(
@@ -151,7 +150,7 @@ def restore_observers(
     fraction: of the run that is done, where its end or its output is another now; None where it is not.
     """
     for k, (watch, part) in enumerate(zip(watches, parts, strict=True)):
-        kept = {name: arrays[f"{OBSERVERS}{k}_{name}"] for name in part["arrays"]}
+        kept = {name: arrays[f"{OBSERVERS}{k}_{n}"] for n, name in enumerate(part["arrays"])}
         watch.resume({"next": part["next"], "own": part["own"] | kept})
         if fraction is not None:
             watch.realign(fraction)

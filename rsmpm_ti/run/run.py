@@ -8,6 +8,7 @@ from typing import Any
 
 from rsmpm_ti.analysis.load_curve import FilteredLoad
 from rsmpm_ti.backend.start import start_taichi
+from rsmpm_ti.backend.threads import check_run_threads
 from rsmpm_ti.errors import BrokenApart, ObserverError, RockWarning, SceneError, UnstableRun, reason, refuse, still_kept
 from rsmpm_ti.output.folder import RunFolder, named, prepare
 from rsmpm_ti.records.result import Progress, Result
@@ -64,6 +65,7 @@ def simulate(
         raise refuse("out", out, "the path of a folder, as text or a Path")
     if overwrite and resume:
         raise refuse("overwrite", overwrite, "False with resume", "a run is replaced, or it goes on")
+    check_run_threads(threads, writes=out is not None)
     seeds, kept = scene.particles(), None
     said = review(scene, seeds)
     if out is not None:
@@ -228,6 +230,8 @@ class Run:
         """One step apart, or the first row of a run that goes on, so that compilation is not counted as running."""
         import taichi as ti
 
+        from rsmpm_ti.run.checkpoint import observer_arrays
+
         self.started, self.painting_s, self.steps_before = time.perf_counter(), 0.0, self.clock.step
         if not self.resumed and self.scene.loading.settle:
             self._settle()
@@ -235,6 +239,8 @@ class Run:
                 return
         if not self.resumed:
             self._look(self.view())  # without a row: no force has acted yet
+            if self.writer is not None:  # what no checkpoint can keep is told now, not at the first of them
+                observer_arrays(self.watches)
             self.drive.advance(1)
         elif not self.over:
             self._row()

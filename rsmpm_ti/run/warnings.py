@@ -35,6 +35,7 @@ def warnings_of(scene: Scene, numbers: dict, history: np.ndarray, events: EventT
         *([_beside_the_middle(scene, events), _near_platen(scene, events)] if len(events) else []),
         _settling(scene, events),
         _sudden_start(scene),
+        _no_stress(scene),
         _imbalance(numbers),
         _motion(numbers, history),
         _between_peaks(numbers),
@@ -65,6 +66,14 @@ def _sudden_start(scene: Scene) -> str:
         f"platens move at full speed from the first step on a body at rest: a wave of rho c v = {stress / 1e6:.3g} MPa "
         f"runs through it; take start = Affine or Ramp for a static test"
     )
+
+
+def _no_stress(scene: Scene) -> str:
+    """Forces without the width by which they would be a stress: there is no load to draw."""
+    cell = scene.loading.load_cell
+    if cell is None or cell.width is not None:
+        return ""
+    return "loading.width is missing: forces of platens do not become stress, and no load curve is drawn; give it"
 
 
 def _imbalance(numbers: dict) -> str:

@@ -21,7 +21,9 @@ class Observer:
         raise NotImplementedError
 
     def state(self) -> dict:
-        """What `resume` needs to go on from a checkpoint: numbers, texts, lists and dicts of them, NumPy arrays."""
+        """What `resume` needs to go on from a checkpoint: numbers, texts, None, lists and dicts of them with texts as
+        keys (tuples come back as lists), and NumPy arrays of numbers or texts, which are not within those. Anything
+        else ends a run that writes files in one line as it starts: this is asked after the first look."""
         return {}
 
     def resume(self, state: dict) -> None:

@@ -73,8 +73,12 @@ class Platen:
             raise refuse("platen.span", self.span, "an interval with its lower end first, in metres")
         given = {name: getattr(self, name) for name in ("force", "stress") if getattr(self, name) is not None}
         if len(given) + (self.speed != 0.0) > 1:
-            name = "speed" if self.speed else "stress"
-            raise refuse(f"platen.{name}", getattr(self, name), "left out", "a platen has a speed, a force or a stress")
+            one = "a platen has a speed, a force or a stress"
+            if self.speed:
+                allowed = f"0 beside a {next(iter(given))}"
+                remedy = f"{one}: set speed = 0, and since no strain need come, strain_end = none and t_end"
+                raise refuse("platen.speed", self.speed, allowed, remedy)
+            raise refuse("platen.stress", self.stress, "none beside a force", f"{one}: set one of them to none")
         for name, value in given.items():
             if value < 0.0 and self.unilateral:
                 remedy = "it only pushes: set pulls = True or bonded = True"

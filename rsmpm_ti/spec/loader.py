@@ -20,7 +20,7 @@ from rsmpm_ti.errors import RockWarning, SceneError, refuse, short, shown
 from rsmpm_ti.spec.library.places import find, in_place_of
 from rsmpm_ti.spec.scene import Scene, Schedule, unchecked
 from rsmpm_ti.spec.scene_json import read_scene
-from rsmpm_ti.units import quantity
+from rsmpm_ti.units import advice, percentage, quantity
 
 
 def load_scene(name: str, *, quick: bool = False, settings: dict[str, object] | None = None, **overrides) -> Scene:
@@ -211,7 +211,7 @@ def _readings(text, wanted, dim: int):
     unit = unit_of(wanted)
 
     def number(part: str) -> float:
-        found = quantity(part, unit, dim) if unit else None
+        found = quantity(part, unit, dim) if unit else percentage(part)
         return float(part) if found is None else found
 
     for read in (number, int, lambda t: tuple(number(part) for part in t.strip("()").split(",") if part.strip())):
@@ -239,7 +239,16 @@ def _parse(key: str, text, wanted, dim: int = 2):
                 raise SceneError(f"{refused} needs parameters; build it in a scene file") from None
             if near is None and kinds & OUT_OF_RANGE:
                 near = refuse(short(key), value, phrase(wanted), remedy(wanted))
-    raise near or SceneError(f"{refused} must be {phrase(wanted)}")
+    said = _advice(text, wanted, dim) if isinstance(text, str) and float in within(wanted) else ""
+    raise near or SceneError(f"{refused} must be {phrase(wanted)}{said}")
+
+
+def _advice(text: str, wanted, dim: int) -> str:
+    """About the first number of a text that has a unit which is none of the field's."""
+    parts = text.strip("()").split(",") if any(typing.get_origin(w) is tuple for w in within(wanted)) else [text]
+    unit = unit_of(wanted)
+    odd = [part for part in parts if unit is None or quantity(part, unit, dim) is None]
+    return next((f"; {said}" for part in odd if (said := advice(part, unit, dim))), "")
 
 
 OUT_OF_RANGE = {"greater_than", "greater_than_equal", "less_than", "less_than_equal", "finite_number", "too_long"}

@@ -63,6 +63,9 @@ class Body:
     spin: Annotated[Spin, Finite] = 0.0
 
 
+Boundary = Platen | Wall | Fixed
+
+
 @checked("loading")
 @dataclass(frozen=True, kw_only=True)
 class Loading:
@@ -83,7 +86,7 @@ class Loading:
     """
 
     boundaries: Annotated[
-        tuple[Annotated[Platen | Wall | Fixed, ByType], ...],
+        tuple[Annotated[Boundary, ByType], ...],
         Len(0, MAX_BOUNDARIES),
         Remedy("every kernel holds code for each"),
     ] = ()
@@ -102,13 +105,22 @@ class Loading:
 
     @property
     def platens(self) -> tuple[Platen, Platen] | None:
-        """(lower, upper) platen of the loading axis, the first two that face each other; they give the strain."""
+        """(lower, upper) platen of the loading axis, the first two that face each other."""
+        return next((pair for pair in self._facing() if all(isinstance(end, Platen) for end in pair)), None)
+
+    @property
+    def ends(self) -> tuple[Boundary, Boundary] | None:
+        """(lower, upper) of what the load presses between, whose way is the strain: `platens`, or else a platen and the
+        boundary at rest that faces it."""
+        alone = (pair for pair in self._facing() if any(isinstance(end, Platen) for end in pair))
+        return self.platens or next(alone, None)
+
+    def _facing(self):
+        """Boundaries that face each other, (lower, upper), in their order."""
         for lower in self.boundaries:
             for upper in self.boundaries:
-                if isinstance(lower, Platen) and isinstance(upper, Platen) and lower.axis == upper.axis:
-                    if (lower.side, upper.side) == ("lower", "upper"):
-                        return lower, upper
-        return None
+                if lower.axis == upper.axis and (lower.side, upper.side) == ("lower", "upper"):
+                    yield lower, upper
 
     @property
     def load_cell(self) -> LoadCell | None:
@@ -117,16 +129,16 @@ class Loading:
 
     @property
     def height(self) -> float:
-        """Distance between the platens [m]."""
-        assert self.platens is not None
-        lower, upper = self.platens
+        """Distance between the ends [m]."""
+        assert self.ends is not None
+        lower, upper = self.ends
         return upper.position - lower.position
 
     @property
     def strain_rate(self) -> float:
         """Nominal axial strain rate [1/s], compression positive."""
-        assert self.platens is not None
-        lower, upper = self.platens
+        assert self.ends is not None
+        lower, upper = self.ends
         return (lower.speed - upper.speed) / self.height
 
 

@@ -88,9 +88,9 @@ def check_loading(scene) -> None:
             raise SceneError(f"strain_end and the Affine start need {needed}; give t_end")
         if loading.load_cell.width is None:
             raise SceneError("loading.width is missing: platen forces need a loaded width to become stress")
-    if loading.platens and not loading.height > 0.0:
-        upper = loading.boundaries.index(loading.platens[1])
-        raise refuse(f"boundaries[{upper}].position", loading.platens[1].position, "above the lower platen's")
+    if loading.ends and not loading.height > 0.5 * domain.dx:  # planes of nodes: the same one, or crossed
+        upper = loading.boundaries.index(loading.ends[1])
+        raise refuse(f"boundaries[{upper}].position", loading.ends[1].position, "above that of the lower one it faces")
     _check_held(scene)
     if scene.schedule.strain_end is not None and not loading.strain_rate * scene.schedule.strain_end > 0.0:
         sign = f"of the sign of the platens' strain rate, lower speed less upper speed, {loading.strain_rate:.6g} 1/s"
@@ -132,7 +132,8 @@ def _check_held(scene) -> None:
         if boundary.held and boundary.stress is not None and loading.width is None:
             raise SceneError(f"loading.width is missing: the force of boundaries[{k}] is its stress over that width")
         if boundary.held and scene.schedule.strain_end is not None:
-            raise SceneError(f"boundaries[{k}] is moved by a force, so strain_end may never come: give t_end")
+            ends = "give t_end, and set strain_end = none"
+            raise SceneError(f"boundaries[{k}] is moved by a force, so strain_end may never come: {ends}")
 
 
 def _pulls_away(loading, boundary) -> bool:

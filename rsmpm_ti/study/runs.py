@@ -14,7 +14,7 @@ import numpy as np
 
 from rsmpm_ti import __version__
 from rsmpm_ti.cases.case import Outcome
-from rsmpm_ti.process import no_current_folder
+from rsmpm_ti.process import no_current_folder, without_ctrl_c
 from rsmpm_ti.records.files import complete
 from rsmpm_ti.spec.library.places import PACKAGE, available
 
@@ -101,5 +101,8 @@ def run_all(runs: list[Run], folder: Path, jobs: int) -> Iterator[tuple[str, dic
     waiting = [(run, folder) for run in runs if run.tag not in done]
     if waiting:
         spawn, jobs = multiprocessing.get_context("spawn"), min(jobs, len(waiting))
-        with no_current_folder(), spawn.Pool(jobs, maxtasksperchild=1) as pool:
-            yield from pool.imap_unordered(_work, waiting)
+        with no_current_folder():
+            with without_ctrl_c():
+                pool = spawn.Pool(jobs, maxtasksperchild=1)
+            with pool:
+                yield from pool.imap_unordered(_work, waiting)

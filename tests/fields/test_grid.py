@@ -17,7 +17,7 @@ from rsmpm_ti.spec.regions import Box, Disc
 from rsmpm_ti.spec.scene import Body, Loading, Scene, Schedule
 
 
-def test_sparse_grid_gives_the_same_result_as_dense():
+def test_sparse_grid_gives_the_same_result_as_dense(as_written):
     scene = load_scene(
         "cube", dx=2e-3, flaw_width=6e-3, strain_end=1.5e-4, time_scale=16.0, settings={"shape": "Linear"}
     )

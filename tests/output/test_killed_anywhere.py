@@ -1,6 +1,7 @@
 """A run that is killed at any single change to the disk, and the one after it."""
 
 import os
+import pathlib
 
 import pytest
 from folders import FILES, contents, mark_of, run
@@ -35,7 +36,10 @@ def killed_at(count: int, monkeypatch, work) -> bool:
     child = os.fork()
     if child == 0:
         for name in CALLS:
-            monkeypatch.setattr(os, name, dying(getattr(os, name)))
+            dies = dying(getattr(os, name))
+            monkeypatch.setattr(os, name, dies)
+            if hasattr(pathlib, "_NormalAccessor"):  # of Python 3.10, whose paths have taken the calls out of os
+                monkeypatch.setattr(pathlib._NormalAccessor, name, staticmethod(dies))
         try:
             work()
             os._exit(0)

@@ -70,3 +70,46 @@ def test_where_the_system_has_no_locks_the_file_is_the_lock(tmp_path, monkeypatc
     assert "remove that file if the process is no more" in refusal(tmp_path)
     first.release()
     lock.Lock(tmp_path).release()
+
+
+@pytest.mark.parametrize("system", ["with locks", "without"])
+def test_a_lock_that_was_removed_is_put_back_where_nobody_has_taken_it(tmp_path, monkeypatch, system):
+    if system == "without":
+        monkeypatch.setattr(lock, "fcntl", None)
+    first = lock.Lock(tmp_path)
+    before = (tmp_path / lock.FILE).read_bytes()
+    for _ in range(2):
+        (tmp_path / lock.FILE).unlink()
+        first.keep()
+        assert (tmp_path / lock.FILE).read_bytes() == before
+        assert f"process {os.getpid()} has since 20" in refusal(tmp_path)
+    first.release()
+    assert not list(tmp_path.iterdir())
+
+
+@pytest.mark.parametrize("other", ["a run", "a killed one", "a file", "a link", "a folder", "a copy"])
+def test_a_lock_that_another_has_taken_meanwhile_is_told(tmp_path, other):
+    first, path = lock.Lock(tmp_path), tmp_path / lock.FILE
+    copy = path.read_bytes()
+    path.unlink()
+    if other == "a run":
+        second = lock.Lock(tmp_path)
+        path.write_bytes(b"process 1 since 2026-01-01 00:00:00\n")
+    elif other == "a link":
+        path.symlink_to(tmp_path / "elsewhere")
+    elif other == "a folder":
+        path.mkdir()
+    else:
+        said = {"a copy": copy, "a file": b"yours", "a killed one": b"process 999999999 since 2026-01-01 00:00:00\n"}
+        path.write_bytes(said[other])
+    there = path.lstat()
+    if other == "a copy":  # as a backup puts it back: nobody else has been there
+        first.keep()
+        assert f"process {os.getpid()} has since 20" in refusal(tmp_path)
+    else:
+        with pytest.raises(SceneError, match="was removed during the run, and (process|something else)"):
+            first.keep()
+        first.release()
+        assert path.lstat() == there and [p.name for p in tmp_path.iterdir()] == [lock.FILE]
+    if other == "a run":
+        second.release()

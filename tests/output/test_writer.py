@@ -9,6 +9,7 @@ from snapshots import snapshot_of
 from writer_orders import NO_ROWS, started
 
 from rsmpm_ti.errors import SceneError
+from rsmpm_ti.output import lock
 from rsmpm_ti.output.writer import Writer
 
 
@@ -50,3 +51,15 @@ def test_checkpoints_of_a_run_are_written_in_order_and_one_is_kept_in_reserve(tm
     kept = [int(np.load(tmp_path / name)["a"]) for name in ("checkpoint.npz", "checkpoint.previous.npz")]
     assert kept == [3, 2]
     assert writer.cpu_s > 0.0 and writer.warning == ""
+
+
+def test_nothing_is_written_into_a_folder_whose_lock_names_another(tmp_path):
+    """The order was given before the lock was removed and another took it."""
+    writer = started(tmp_path)
+    writer.ready()
+    (tmp_path / lock.FILE).write_text("process 1 since 2026-01-01 00:00:00\n")
+    before = sorted(path.name for path in tmp_path.rglob("*"))
+    with pytest.raises(SceneError, match="its lock was removed during the run, and another has it"):
+        writer.checkpoint({"a": np.zeros(3)})
+        finish(writer)
+    assert sorted(path.name for path in tmp_path.rglob("*")) == before

@@ -42,12 +42,19 @@ def test_movie_without_frames_writes_nothing_and_without_encoder_says_so(tmp_pat
         Movie(tmp_path / "none.mp4")
 
 
+LAST = "for last; do :; done"
 HANDS = {
     "ends at once": ("exit 1", "ended with status 1"),
     "says why": ("cat > /dev/null; echo no space >&2; exit 1", "status 1: no space"),
     "takes nothing": ("sleep 1000", "did not answer for 0.5 s"),
     "never finishes": ("cat > /dev/null; sleep 1000", "did not answer for 0.5 s"),
     "makes nothing": ("cat > /dev/null; exit 0", "is no movie"),
+    "leaves a folder": (
+        f'{LAST}; cat > /dev/null; rm "$last"; mkdir "$last"',
+        "cube.part.mp4, which is no file: remove it",
+    ),
+    "fails and leaves a folder": (f'{LAST}; rm "$last"; mkdir "$last"; exit 1', "ended with status 1"),
+    "leaves a link": (f'{LAST}; cat > /dev/null; ln -sf "$0" "$last"', "cube.part.mp4, which is no file: remove it"),
 }
 
 
@@ -68,6 +75,26 @@ def test_encoder_that_fails_is_named_in_one_line_and_leaves_nothing(tmp_path, mo
         movie.close()
     movie.discard()
     assert "\n" not in str(told.value) and not list((tmp_path / "out").iterdir())
+
+
+FULL = f'{LAST}; cat > /dev/null; rm "$last"; mkdir "$last"; touch "$last/yours"'
+NAMED = f"{LAST}; cat > /dev/null; printf '....ftyp' > \"$last\"; mkdir out/cube.mp4"
+
+
+@pytest.mark.parametrize("hand, left", [(FULL, ".cube.part.mp4"), (NAMED, "cube.mp4")])
+def test_folder_in_place_of_the_movie_is_named_and_left_alone(tmp_path, monkeypatch, hand, left):
+    pytest.importorskip("imageio_ffmpeg")
+    (tmp_path / "ffmpeg").write_text(f"#!/bin/sh\n{hand}\n")
+    (tmp_path / "ffmpeg").chmod(0o755)
+    (tmp_path / "out").mkdir()
+    monkeypatch.setenv("IMAGEIO_FFMPEG_EXE", str(tmp_path / "ffmpeg"))
+    monkeypatch.chdir(tmp_path)
+    movie = Movie(tmp_path / "out" / "cube.mp4")
+    movie.add(*np.zeros((2, 40, 40, 3), dtype=np.uint8))
+    with pytest.raises(RuntimeError, match=f"{left}.*: remove it$"):
+        movie.close()
+    movie.discard()
+    assert [path.name for path in (tmp_path / "out").iterdir()] == [left]
 
 
 def test_movie_fits_full_hd_and_is_never_enlarged():

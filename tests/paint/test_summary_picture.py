@@ -106,3 +106,14 @@ def test_the_peak_of_a_test_in_tension_is_its_largest_pull(tmp_path, monkeypatch
     monkeypatch.setattr("matplotlib.axes.Axes.set_title", lambda self, text, **_: said.append(text))
     summary_picture(tmp_path / "s.png", snapshot(lattice(4, 4)), table, frame_painter())
     assert said[0].startswith("peak -55.00 MPa at -0.400 %")
+
+
+def test_a_load_without_a_strain_is_drawn_over_time(tmp_path, monkeypatch):
+    """Of one platen that nothing faces."""
+    table = history(30)
+    table["axial_strain"] = np.nan
+    said, drawn = [], []
+    monkeypatch.setattr("matplotlib.axes.Axes.set_title", lambda self, text, **_: said.append(text))
+    monkeypatch.setattr("matplotlib.axes.Axes.set_xlabel", lambda self, text, **_: drawn.append(text))
+    summary_picture(tmp_path / "s.png", snapshot(lattice(4, 4)), table, frame_painter())
+    assert said[0] == "largest so far 55.00 MPa at 1.000 ms" and drawn[0] == "time [ms]"

@@ -84,3 +84,42 @@ def test_fields_of_a_user_are_not_freed_by_a_run(said):
 @pytest.mark.parametrize("use", ["later", "later whole"])
 def test_fields_made_after_a_run_raise_when_another_has_freed_them(said, use):
     assert said[use].startswith("RuntimeError: this Taichi field is gone")
+
+
+FORK = """
+import multiprocessing, sys
+import taichi as ti
+{before}
+scene = 'load_scene("intact", dx=0.01, settings={{"t_end": "1e-5", "strain_end": "none", "time_scale": "1"}})'
+
+
+def child():
+    from rsmpm_ti import load_scene, simulate
+    try:
+        simulate(eval(scene))
+    except Exception as error:
+        print(type(error).__name__, error, flush=True)
+
+
+if __name__ == "__main__":
+    ti.init(arch=ti.cpu, cpu_max_num_threads=1, log_level=ti.ERROR)
+    {then}
+    process = multiprocessing.get_context("fork").Process(target=child)
+    process.start()
+    process.join(30)
+    process.kill()
+"""
+USED = "ti.field(ti.f32, 3).fill(1.0)"
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="threads of a process are counted by Linux's /proc")
+@pytest.mark.parametrize("before, then", [("import rsmpm_ti", "pass"), ("", "pass"), ("", USED)])
+def test_a_run_in_a_fork_of_a_process_that_started_taichi_itself_is_refused(tmp_path, before, then):
+    """What is imported only in the child has not seen the fork."""
+    (tmp_path / "script.py").write_text(FORK.format(before=before, then=then))
+    done = subprocess.run(
+        [sys.executable, "script.py"], cwd=tmp_path, env=os.environ | {"PYTHONPATH": str(ROOT)}, capture_output=True,
+        text=True, timeout=60,
+    )  # fmt: skip
+    said = done.stdout.splitlines()[-1]
+    assert said.startswith("SceneError this process is the fork of one in which Taichi ran"), done.stderr

@@ -1,6 +1,7 @@
 """The command and its folder: what a refused, a second, a resumed and a disturbed run leave there."""
 
 import json
+import os
 import re
 import shutil
 import subprocess
@@ -11,6 +12,7 @@ import imageio.v3 as imageio
 import pytest
 
 from rsmpm_ti.errors import SceneError
+from rsmpm_ti.output import lock
 from rsmpm_ti.run.run import simulate
 from rsmpm_ti.scene import build, main, parser
 
@@ -103,3 +105,60 @@ def test_a_folder_that_is_replaced_during_the_run_is_told_and_left_alone(tmp_pat
     with pytest.raises(SceneError, match="out was moved, removed or replaced during the run$"):
         simulate(build(parser().parse_args(RUN)), out=out, name="intact", threads=1, progress=replace)
     assert contents(out)["history.csv"] == b"yours"
+
+
+class Wanders:
+    """An observer that changes the current folder at every row."""
+
+    every = 0.0
+
+    def __init__(self, folder: Path):
+        self.folder = folder
+
+    def see(self, view) -> None:
+        os.chdir(self.folder)
+
+    def state(self) -> dict:
+        return {}
+
+    def resume(self, state: dict) -> None:
+        pass
+
+
+def test_the_current_folder_may_change_during_a_run(tmp_path, monkeypatch):
+    here, elsewhere = tmp_path / "here", tmp_path / "elsewhere"
+    for folder in (here, elsewhere):
+        folder.mkdir()
+    how = {"out": Path("runs/out"), "name": "intact", "threads": 1, "checkpoint_every": 0.0}
+    for again in ({}, {"overwrite": True}, {"resume": True}):
+        monkeypatch.chdir(here)
+        scene = build(parser().parse_args([*RUN, *(["--set", "strain_end=1.2e-4"] if "resume" in again else [])]))
+        result = simulate(scene, **how, **again, observers=(Wanders(elsewhere),))
+        assert Path.cwd() == elsewhere and not list(elsewhere.iterdir())
+        assert result.summary["complete"] and result.out == here / "runs" / "out"
+        assert [path.name for path in (here / "runs").iterdir()] == ["out"]
+
+
+@pytest.mark.parametrize("taken", [False, True])
+def test_a_run_whose_lock_is_removed_goes_on_unless_another_takes_the_folder(tmp_path, taken):
+    out, seen = tmp_path / "out", {}
+
+    def disturb(progress) -> None:
+        if progress.fraction > 0.5 and not seen:
+            (out / lock.FILE).unlink()
+            if taken:
+                seen["lock"] = lock.Lock(out)
+                (out / lock.FILE).write_text("process 1 since 2026-01-01 00:00:00\n")
+            seen["files"] = contents(out)
+
+    scene = build(parser().parse_args(RUN))
+    if not taken:
+        assert simulate(scene, out=out, name="intact", threads=1, progress=disturb).summary["complete"] is True
+        assert seen and not (out / lock.FILE).exists()
+        return
+    with pytest.raises(SceneError, match="was removed during the run, and process 1 has the folder since"):
+        simulate(scene, out=out, name="intact", threads=1, progress=disturb)
+    there = contents(out)
+    assert {name: there[name] for name in seen["files"]} == seen["files"]
+    assert "history.csv" not in there and "summary.json" not in there
+    seen["lock"].release()

@@ -44,6 +44,14 @@ def test_sound_test_warns_of_nothing():
     assert sentences() == [] and sentences(events=failed_at(0.025, 0.05)) == []
 
 
+def test_forces_without_a_width_are_no_load():
+    platens = make().loading.boundaries
+    still = tuple(replace(platen, speed=0.0) for platen in platens)
+    timed = {"schedule_strain_end": None, "schedule_t_end": 1e-4, "loading_start": AtRest()}
+    (said,) = sentences(make(loading_boundaries=still, loading_width=None, **timed))
+    assert said.startswith("loading.width is missing") and "no load curve" in said
+
+
 def test_platens_at_full_speed_on_a_body_at_rest():
     scene = make(loading_start=AtRest())
     (said,) = sentences(scene)

@@ -12,6 +12,7 @@ from rsmpm_ti import (
     Box,
     BulkViscosity,
     Domain,
+    Fixed,
     Hooke,
     Loading,
     MohrCoulomb,
@@ -23,9 +24,11 @@ from rsmpm_ti import (
     SceneError,
     Schedule,
     Unbreakable,
+    Wall,
     simulate,
 )
-from rsmpm_ti.analysis.load_curve import loading_curve
+from rsmpm_ti.analysis.load_curve import filter_rows, loading_curve
+from rsmpm_ti.output.pictures import load_limits
 
 E, NU, DENSITY, DX, SIDE = 17e9, 0.14, 2600.0, 2e-3, 20e-3
 MODULUS = E / (1.0 - NU**2)
@@ -67,6 +70,27 @@ def test_a_platen_that_a_force_moves_makes_the_stress_and_strain_of_the_force(ax
     assert stress[holding].mean() - confinement == pytest.approx(10e6, rel=2e-3)
     assert strain[holding].mean() == pytest.approx(10e6 / MODULUS, rel=2e-3)
     assert np.interp(20.0 * TRANSIT, middle, stress) - confinement == pytest.approx(5e6, rel=0.05)
+
+
+def test_strain_and_load_of_a_platen_against_a_wall_are_those_of_two_platens():
+    """Whatever is at rest and faces it; and the pictures' axes hold the curve."""
+    program = Program(times=(40.0 * TRANSIT,), factors=(1.0,))
+    wall, (_, upper) = Wall(axis=1, side="lower", position=0.0), pair(stress=10e6)
+    scene = block((wall, upper), Schedule(t_end=80.0 * TRANSIT), start=program)
+    history = simulate(scene, threads=1).history
+    middle, stress, strain = loading_curve(history)
+    holding = middle > 50.0 * TRANSIT
+    assert stress[holding].mean() == pytest.approx(10e6, rel=2e-3)
+    assert strain[holding].mean() == pytest.approx(10e6 / MODULUS, rel=2e-3)
+    both = block(pair(stress=10e6), Schedule(t_end=80.0 * TRANSIT), start=program)
+    every = Schedule(t_end=80.0 * TRANSIT, rows=100_000)
+    assert filter_rows(replace(scene, schedule=every)) == filter_rows(replace(both, schedule=every)) > 3
+    limits = load_limits(scene, SIDE**2)
+    assert limits == load_limits(both, SIDE**2) and limits[0] > strain.max() and limits[1] > stress.max()
+    clamp = Fixed(axis=1, side="lower", position=0.0)
+    assert Loading(boundaries=(clamp, upper)).ends == (clamp, upper)
+    assert Loading(boundaries=(wall, clamp, *pair())).ends == pair(), "two platens come first"
+    assert Loading(boundaries=(wall,)).ends is None and Loading(boundaries=(upper,)).ends is None
 
 
 def test_a_table_loads_holds_and_unloads():

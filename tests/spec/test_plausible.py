@@ -7,7 +7,24 @@ from dataclasses import replace
 import pytest
 from small_scene import make
 
-from rsmpm_ti import Box, Difference, Directional, GPa, Hooke, LinearSoftening, MohrCoulomb, MPa, Rock, Slit, load_scene
+from rsmpm_ti import (
+    Box,
+    Clipped,
+    Difference,
+    Directional,
+    GPa,
+    Hooke,
+    LinearSoftening,
+    MohrCoulomb,
+    MPa,
+    Output,
+    Platen,
+    Rock,
+    Schedule,
+    Slit,
+    load_scene,
+)
+from rsmpm_ti.checks import KNOWN, annotations, is_pressure
 from rsmpm_ti.errors import SceneError
 from rsmpm_ti.rock.presets import lab_rock
 from rsmpm_ti.spec.ground.in_situ import InSitu
@@ -132,6 +149,59 @@ def test_refusal_without_such_a_cause_stays_as_it_is():
 def test_confining_pressure_in_megapascals():
     said = implausible(specimen(paper(), confinement=2.0))
     assert said == ["loading.confinement = 2 Pa looks like MPa: write 2e6 or '2 MPa'"]
+
+
+CLIPPED = Clipped(tension_limit=0.5, compression_limit=100e6)
+HELD = Platen(axis=1, side="upper", position=0.1, stress=20.0)
+PRESSURES = {
+    ("Hooke", "E"): lambda: specimen(paper(E=17.0)),
+    ("MohrCoulomb", "cohesion"): lambda: specimen(paper(cohesion=14.63, tensile_strength=2.0)),
+    ("MohrCoulomb", "tensile_strength"): lambda: specimen(paper(tensile_strength=2.0)),
+    ("Clipped", "tension_limit"): lambda: specimen(replace(paper(), after_failure=CLIPPED)),
+    ("Clipped", "compression_limit"): lambda: specimen(
+        replace(paper(), after_failure=replace(CLIPPED, tension_limit=0.0, compression_limit=100.0))
+    ),
+    ("InSitu", "overburden"): lambda: specimen(
+        paper(), initial_stress=InSitu(axis=1, surface=0.1, overburden=3.0, K0=0.5), start=AtRest()
+    ),
+    ("Platen", "stress"): lambda: held(HELD),
+    ("Loading", "confinement"): lambda: specimen(paper(), confinement=2.0),
+    ("Output", "stress_limit"): lambda: replace(specimen(paper()), output=Output(stress_limit=3.0)),
+}
+
+
+def held(platen: Platen):
+    scene = specimen(paper())
+    loading = replace(scene.loading, boundaries=(scene.loading.boundaries[0], platen))
+    return replace(scene, loading=loading, schedule=Schedule(t_end=1e-4))
+
+
+def test_every_pressure_of_a_scene_is_among_them():
+    assert set(PRESSURES) == {
+        (kind.__name__, n) for kind in KNOWN.values() for n in annotations(kind) if is_pressure(kind, n)
+    }
+
+
+@pytest.mark.parametrize("owner, name", PRESSURES)
+def test_pressure_that_lost_its_unit_looks_like_megapascals(owner, name):
+    """As a warning, or as the likely cause of a refusal."""
+    try:
+        said = "\n".join(implausible(PRESSURES[owner, name]()))
+    except SceneError as error:
+        said = str(error)
+    number = re.search(rf"{name} = (\S+) Pa looks like [GM]Pa: write (\S+) or '(\S+) [GM]Pa'", said)
+    assert number and number[1] == number[3] and float(number[2]) in (1e6 * float(number[1]), 1e9 * float(number[1]))
+
+
+def test_refusal_of_a_law_says_which_of_its_numbers_has_lost_its_unit():
+    for number, written in ((14.63, "14.63e6"), (1.463e-5, "14.63")):
+        with pytest.raises(SceneError) as refused:
+            MohrCoulomb(cohesion=number, friction_angle=40.0, tensile_strength=2e6)
+        said = f"; likely cause: cohesion = {number:g} Pa looks like MPa: write {written} or '{number:g} MPa'"
+        assert str(refused.value).endswith(said)
+    with pytest.raises(SceneError) as refused:
+        load_scene("cube", settings={"rock.criterion.cohesion": "14.63"})
+    assert str(refused.value).count("looks like MPa") == 1
 
 
 @pytest.mark.parametrize("degrees", [15.0, 30.0, 45.0, 60.0, 90.0, -45.0, 180.0])

@@ -8,7 +8,7 @@ from small_scene import refusal
 
 from rsmpm_ti.scene import main
 from rsmpm_ti.spec.loader import load_scene
-from rsmpm_ti.units import Unit, quantity
+from rsmpm_ti.units import COMMON, Unit, advice, percentage, quantity
 
 
 def cube(**settings):
@@ -95,6 +95,55 @@ def test_keywords_and_fields_of_a_scene_take_units():
 )
 def test_unit_of_another_dimension_is_refused(name, text, allowed):
     assert refusal(lambda: cube(**{name: text})).startswith(f"{name}={text} is refused: it must be {allowed}")
+
+
+@pytest.mark.parametrize(
+    "name, text, remedy",
+    [
+        ("rock.criterion.cohesion", "14.63 mpa", "capital letters count: did you mean '14.63 MPa'?"),
+        ("rock.criterion.cohesion", "14.63mPa", "capital letters count: did you mean '14.63 MPa'?"),
+        ("rock.density", "2.6 G/CM3", "capital letters count: did you mean '2.6 g/cm^3'?"),
+        ("flaw_length", "15 Mm", "capital letters count: did you mean '15 mm'?"),
+        ("domain.lower", "0 mm, 1 KM", "capital letters count: did you mean '1 km'?"),
+        ("rock.elasticity.E", "55 m", "its units are MPa, GPa, kPa, Pa, bar, psi, and others of that dimension"),
+        ("rock.elasticity.E", "55 nosuch", "its units are MPa, GPa, kPa, Pa, bar, psi, and others of that dimension"),
+        ("loading.width", "5 mm^2", "its units are mm, cm, um, m, km, in, and others of that dimension"),
+        ("flaw_length", "15%", "give its unit, such as mm"),
+        ("strain_end", "1 mm", "it has no unit"),
+    ],
+)
+def test_refusal_of_a_unit_says_what_to_type(name, text, remedy):
+    said = refusal(lambda: cube(**{name: text}))
+    assert said.startswith(f"{name}={text} is refused: it must be ") and said.partition("; ")[2].startswith(remedy)
+
+
+def test_common_units_are_units_and_no_two_differ_by_capitals_alone():
+    for name, words in COMMON.items():
+        for word in words.split():
+            assert quantity(f"1 {word}", Unit(name)) is not None, word
+            assert advice(f"1 {word.swapcase()}", Unit(name)) == (f"capital letters count: did you mean '1 {word}'?"), (
+                word
+            )
+        assert len({word.lower() for word in words.split()}) == len(words.split())
+
+
+@pytest.mark.parametrize(
+    "text, number",
+    [("0.35%", 0.0035), ("0.35 %", 0.0035), ("-7%", -0.07), ("5.%", 0.05), (".1%", 0.001), ("29%", 0.29)],
+)
+def test_percentage_is_the_number_that_one_would_have_typed(text, number):
+    assert percentage(text) == number
+
+
+@pytest.mark.parametrize("text", ["", "%", ".%", "1%%", "1 %m", "nan%", "1_0%", "1e-3%", "9" * 100 + "%"])
+def test_other_texts_are_no_percentage(text):
+    assert percentage(text) is None
+
+
+def test_pure_numbers_take_percentages():
+    scene = cube(**{"strain_end": "0.35%", "rock.elasticity.nu": "25%"})
+    assert scene.schedule.strain_end == 0.0035 and scene.rock.elasticity.nu == 0.25
+    assert "must be an integer" in refusal(lambda: cube(**{"schedule.rows": "50%"}))
 
 
 def test_range_holds_for_numbers_with_units():

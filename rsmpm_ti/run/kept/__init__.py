@@ -1,1 +1,1 @@
-"""Checkpoints as they are found in a folder: a stranger may have written them, so nothing in them is believed."""
+"""What a checkpoint may hold, and whether one that is found in a folder does: a stranger may have written it."""

@@ -27,7 +27,7 @@ def check_progress(progress, contents: Contents, settings: Settings) -> None:
         need(_count(part["next"], 2**31), f"observer {k} looks next at {str(part['next'])[:20]}")
         need(isinstance(part["own"], dict), f"observer {k} remembers no dict")
         need(isinstance(names, list) and all(isinstance(name, str) for name in names), f"observer {k} names no arrays")
-    told = {f"{OBSERVERS}{k}_{name}" for k, part in enumerate(parts) for name in part["arrays"]}
+    told = {f"{OBSERVERS}{k}_{n}" for k, part in enumerate(parts) for n in range(len(part["arrays"]))}
     need(told == {name for name in contents.arrays if name.startswith(OBSERVERS)}, "observers have other arrays")
     largest, frames, files, *_, clock = parts
     _check_largest(largest, contents)
@@ -54,7 +54,7 @@ def _check_largest(part: dict, contents: Contents) -> None:
     need(set(own) == {"largest", "time"} and set(names) == wanted - {"time"} and len(names) == len(wanted) - 1,
          "its pattern of cracks is incomplete")  # fmt: skip
     need(_number(own["time"], contents.time * (1.0 + 1e-9)), "its pattern of cracks is of another time")
-    of = {name: contents.arrays[f"{OBSERVERS}0_{name}"] for name in names}
+    of = {name: contents.arrays[f"{OBSERVERS}0_{n}"] for n, name in enumerate(names)}
     ids, dim = of["id"], contents.scene.dim
     need(ids.ndim == 1 and 0 < len(ids) <= contents.count, "its pattern of cracks has no particles")
     kinds = {"id": "i", "failure_mode": "i", "governs": "i"}

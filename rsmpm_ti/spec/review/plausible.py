@@ -8,6 +8,7 @@ import dataclasses
 import math
 from dataclasses import dataclass, replace
 
+from rsmpm_ti.checks import KNOWN, is_pressure, pressure_said, too_small
 from rsmpm_ti.errors import SceneError
 from rsmpm_ti.spec.mass_scaling import estimate
 from rsmpm_ti.spec.regions import Slit, cuts_of
@@ -56,9 +57,6 @@ MODULUS_RATIO = (30.0, 3000.0)
 BRITTLENESS = (2.0, 100.0)
 """Uniaxial compressive over tensile strength: mostly 4 to 40 (Cai 2010, Rock Mech. Rock Eng. 43:167)."""
 
-LEAST_PRESSURE = 1e3
-"""A confining pressure below it [Pa] is no pressure that rock would notice."""
-
 MOST_INERTIA = 0.2
 """Fraction of the load at first failure that inertia may be expected to add: see `mass_scaling.py`. Scenes that ship
 have up to 0.11."""
@@ -81,20 +79,30 @@ WHOLE_ANGLE, NEAR = 5.0, 0.15
 def implausible(scene) -> list[str]:
     """All of it."""
     rock = [said for path, value, known in _known(scene.rock) if (said := _outside(path, value, known))]
-    return [*rock, *_ratios_said(scene.rock), *_geometry_said(scene), *_loading_said(scene), *_overburden_said(scene)]
+    units = [*_pressures_said(scene, "rock", "loading", "output"), *_angles_said(scene)]
+    return [*rock, *_ratios_said(scene.rock), *units, *_loading_said(scene), *_overburden_said(scene)]
 
 
 def _known(rock) -> list[tuple[str, float, Range]]:
     """(dotted path, value, range) of every number of a rock that has a range; 0 is a choice."""
     numbers = _numbers("rock", rock)
-    return [(path, value, RANGES[name]) for path, name, value in numbers if name in RANGES and value != 0.0]
+    return [(path, value, RANGES[name]) for path, _, name, value in numbers if name in RANGES and value != 0.0]
 
 
-def _geometry_said(scene) -> list[str]:
-    """Pressures and angles beside the rock that look like another unit."""
-    said, pressure = [], scene.loading.confinement
-    if 0.0 < pressure < LEAST_PRESSURE:
-        said.append(f"loading.confinement = {pressure:g} Pa looks like MPa: write {pressure:g}e6 or '{pressure:g} MPa'")
+def _pressures_said(scene, *parts: str) -> list[str]:
+    """Pressures of parts of a scene that have no range and look like megapascals."""
+    numbers = (number for part in parts for number in _numbers(part, getattr(scene, part)))
+    small = [
+        (path, value)
+        for path, owner, name, value in numbers
+        if name not in RANGES and too_small(value) and _is_pressure(owner, name)
+    ]
+    return [f"{path} = {pressure_said(value)}" for path, value in small]
+
+
+def _angles_said(scene) -> list[str]:
+    """Angles beside the rock that look like radians."""
+    said = []
     for body in scene.bodies:
         for _, part in cuts_of(body.region):
             angle = part.angle if isinstance(part, Slit) else 0.0
@@ -108,18 +116,26 @@ def _geometry_said(scene) -> list[str]:
 def blamed(error: SceneError, scene) -> SceneError:
     """A refusal, with what looks like another unit as its likely cause."""
     causes = [said for path, value, known in _known(scene.rock) if (said := _mistaken(path, value, known))]
-    causes += _geometry_said(scene)
-    return SceneError(f"{error}; likely cause: {'; '.join(causes)}") if causes else error
+    causes += [*_pressures_said(scene, "rock", "loading"), *_angles_said(scene)]
+    new = [said for said in causes if said not in str(error)]
+    return SceneError(f"{error}; likely cause: {'; '.join(new)}") if new else error
 
 
 def _numbers(path: str, thing):
-    """(dotted path, field, value) of every number of a dataclass, however deep."""
+    """(dotted path, class, field, value) of every number of a dataclass, however deep, those in tuples included."""
     for field in dataclasses.fields(thing):
-        value = getattr(thing, field.name)
-        if dataclasses.is_dataclass(value):
-            yield from _numbers(f"{path}.{field.name}", value)
-        elif type(value) in (int, float):
-            yield f"{path}.{field.name}", field.name, float(value)
+        value, place = getattr(thing, field.name), f"{path}.{field.name}"
+        entries = enumerate(value) if isinstance(value, tuple) else ()
+        for deeper, inner in ((place, value), *((f"{place}.{k}", entry) for k, entry in entries)):
+            if dataclasses.is_dataclass(inner):
+                yield from _numbers(deeper, inner)
+        if type(value) in (int, float):
+            yield place, type(thing), field.name, float(value)
+
+
+def _is_pressure(kind: type, name: str) -> bool:
+    """Of laws of a scene's own nothing is known."""
+    return KNOWN.get(kind.__name__) is kind and is_pressure(kind, name)
 
 
 def _mistaken(path: str, value: float, rock: Range) -> str:
