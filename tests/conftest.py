@@ -53,7 +53,7 @@ def restart_taichi():
 
 @pytest.fixture
 def as_written(monkeypatch):
-    """Arithmetic as it is written: by default LLVM fuses and reorders it, on some processors not alike in two kernels."""
+    """Arithmetic as it is written: else LLVM fuses and reorders it, on some processors not alike in two kernels."""
     monkeypatch.setattr(ti, "init", partial(ti.init, fast_math=False))
 
 
