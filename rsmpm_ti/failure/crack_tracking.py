@@ -6,8 +6,9 @@ from rsmpm_ti.failure.nonlocal_fields import (
     mark_overloaded,
     mean_stress,
     near_overloaded,
+    needed_tiles,
     read_crack_strains,
-    sum_nonlocal,
+    sum_needed,
 )
 from rsmpm_ti.failure.stress_update import start_failure
 from rsmpm_ti.fields.nonlocal_sums import MAX_NEW_CRACKS
@@ -74,7 +75,9 @@ def exclude(sim: ti.template()):
 
 def track_cracks(sim, time: float) -> None:
     """The tensile check by the mean stress, after a step, and the openings by which cracks lose strength."""
-    sum_nonlocal(sim)
+    if not needed_tiles(sim, sim.nonlocal_sums.weakest):
+        return
+    sum_needed(sim)
     read_crack_strains(sim)
     mark_overloaded(sim, sim.nonlocal_sums.weakest)
     evaluate_overload(sim)

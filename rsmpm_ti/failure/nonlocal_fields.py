@@ -1,21 +1,66 @@
 """Mean stress and mean crack strain over a length of the rock: spread to nodes, blurred along each axis, read back.
 
-2D.
+2D. A look for cracks needs them only near what is cracked or has tension of its own beyond the strength, since a mean is
+no larger than the largest that it is taken over; the grid is averaged there tile by tile, with the same sums.
 """
 
 import taichi as ti
 
+from rsmpm_ti.fields.nonlocal_sums import TILE
 from rsmpm_ti.fields.parallel import over_particles
 from rsmpm_ti.fields.stencil import coordinates, per_metre, weights_at
 from rsmpm_ti.method.tensor_product import tensor_gradient, tensor_weight
 from rsmpm_ti.rock.tensors import extreme_principals
 
 
+RESULT, SOURCE = 2, 1
+"""What is needed of a tile: means at its nodes, or only its sums for those of others; or 0."""
+
+ROUNDING = 1e-3
+"""Part of the strength below which own tension makes no mean that reaches it, whatever the precision."""
+
+
+@ti.func
+def needed(sim: ti.template(), i):
+    """What is needed of the tile of node i."""
+    return sim.nonlocal_sums.needed[i // TILE]
+
+
+@ti.kernel
+def need_all_tiles(sim: ti.template()):
+    for tile in ti.grouped(sim.nonlocal_sums.needed):
+        sim.nonlocal_sums.needed[tile] = RESULT
+
+
+@ti.kernel
+def needed_tiles(sim: ti.template(), limit: float) -> ti.i32:
+    """Find what is needed of each tile if means below `limit` [Pa] are of no interest; returns whether any is."""
+    particles, means = sim.particles, sim.nonlocal_sums
+    for tile in ti.grouped(means.hot):
+        means.hot[tile] = 0
+        means.any_hot[None] = 0
+    for p in particles.mode:
+        if particles.mode[p] != 0 or extreme_principals(particles.sigma[p])[0] >= (1.0 - ROUNDING) * limit:
+            means.hot[sim.grid.base(coordinates(sim, p, sim.grid.frame()), sim.shape) // TILE] = 1
+            means.any_hot[None] = 1
+    for tile in ti.grouped(means.needed):
+        far = ti.static(means.result_tiles + means.source_tiles)
+        need = 0
+        for offset in ti.grouped(ti.ndrange((-far, far + 1), (-far, far + 1))):
+            other = tile + offset
+            if (other >= 0).all() and (other < ti.Vector(means.hot.shape)).all() and means.hot[other] == 1:
+                near = ti.abs(offset).max() <= means.result_tiles
+                need = ti.max(need, ti.select(near, RESULT, SOURCE))
+        means.needed[tile] = need
+    return means.any_hot[None]
+
+
 @ti.kernel
 def clear_nonlocal_sums(sim: ti.template()):
     zero = ti.Vector.zero(float, 6)
     for i in ti.grouped(sim.nonlocal_sums.sums):
-        sim.nonlocal_sums.sums[i] = zero
+        if needed(sim, i) > 0:
+            sim.nonlocal_sums.sums[i] = zero
         sim.nonlocal_sums.peak[i] = 0.0
     for _ in range(1):
         sim.nonlocal_sums.count[None], sim.nonlocal_sums.any_overloaded[None] = 0, 0
@@ -28,6 +73,8 @@ def add_stress(sim: ti.template(), start, stop, slot, what: ti.template(), dt, t
     for p in range(start, stop):
         xi = coordinates(sim, p, sim.grid.frame())
         base = sim.grid.base(xi, sim.shape)
+        if needed(sim, base) == 0:
+            continue
         w, dw = weights_at(sim, xi, base)
         sigma, V_p = particles.sigma[p], particles.volume[p] * sim.rock.after_failure.carrying_ratio(sim, p)
         strain = particles.history.crack_strain_max[p][0]
@@ -43,10 +90,12 @@ def spread_stress(sim: ti.template(), ticket: int):
 
 
 @ti.kernel
-def blur(sim: ti.template(), source: ti.template(), target: ti.template(), axis: ti.template()):
-    """Convolution of node sums with the filter's weights along one axis."""
+def blur(sim: ti.template(), source: ti.template(), target: ti.template(), axis: ti.template(), least: ti.template()):
+    """Convolution of node sums with the filter's weights along one axis, where at least that much is needed."""
     reach = ti.static(sim.nonlocal_sums.reach)
     for i in ti.grouped(source):
+        if needed(sim, i) < least:
+            continue
         total = ti.Vector.zero(float, 6)
         for k in range(-reach, reach + 1):
             j = i + k * ti.Vector.unit(2, axis)
@@ -108,7 +157,7 @@ def mark_overloaded(sim: ti.template(), limit: float):
     """
     for i in ti.grouped(sim.nonlocal_sums.sums):
         total, overloaded = sim.nonlocal_sums.sums[i], 0
-        if total[4] > 0.0:
+        if needed(sim, i) == RESULT and total[4] > 0.0:
             sigma = ti.Vector([total[0], total[1], total[2], total[3]])
             if extreme_principals(sigma)[0] >= limit * total[4]:
                 overloaded = 1
@@ -126,8 +175,14 @@ def near_overloaded(sim: ti.template(), p):
 
 
 def sum_nonlocal(sim) -> None:
-    """Fill sim.nonlocal_sums.sums for `mean_stress` and `read_crack_strains`."""
+    """Fill sim.nonlocal_sums.sums for `mean_stress` and `read_crack_strains`, of all particles."""
+    need_all_tiles(sim)
+    sum_needed(sim)
+
+
+def sum_needed(sim) -> None:
+    """The same in those tiles whose results are needed."""
     clear_nonlocal_sums(sim)
     spread_stress(sim, sim.traversal.ticket())
-    blur(sim, sim.nonlocal_sums.sums, sim.nonlocal_sums.other, 0)
-    blur(sim, sim.nonlocal_sums.other, sim.nonlocal_sums.sums, 1)
+    blur(sim, sim.nonlocal_sums.sums, sim.nonlocal_sums.other, 0, SOURCE)
+    blur(sim, sim.nonlocal_sums.other, sim.nonlocal_sums.sums, 1, RESULT)

@@ -8,6 +8,9 @@ import taichi as ti
 from rsmpm_ti.fields.grid import Grid
 from rsmpm_ti.spec.scene import Scene
 
+TILE = 8
+"""Nodes along the edge of a tile, the piece of the grid that is averaged or skipped as a whole."""
+
 MAX_NEW_CRACKS = 4096
 """Most particles that crack by mean stress in one step; the others wait for the next."""
 
@@ -27,6 +30,12 @@ class NonlocalSums:
             ti.field(ti.i32, grid.nodes),
             ti.field(ti.i32, ()),
         )
+        # what a look needs of each tile: see `needed_tiles` in failure/nonlocal_fields.py
+        tiles = tuple(-(-n // TILE) for n in grid.nodes)
+        self.hot, self.needed, self.any_hot = ti.field(ti.i32, tiles), ti.field(ti.i32, tiles), ti.field(ti.i32, ())
+        width = scene.shape.width - 1
+        self.result_tiles = -(-(self.reach + 2 * width) // TILE)  # from a hot particle's to all whose mean it is part of
+        self.source_tiles = -(-(self.reach + width) // TILE)  # and from those to all that they take it from
         band = scene.shape.crack_band * scene.domain.dx
         self.band_fraction = scene.rock.nonlocal_mean.band_fraction(band)
         self.variance = scene.rock.nonlocal_mean.band_variance(band)
