@@ -12,6 +12,8 @@ WRITER = 10
 """Threads of the process that paints and writes, its first one included, and two by which it is listened to; more are
 those of BLAS."""
 
+STACK = 256 * 1024
+"""Of a thread that is tried [B]. Usual ones take memory, whose lack would be told as one of threads."""
 
 BLAS_MOST = 64
 """What the BLAS in wheels of NumPy and SciPy was built for."""
@@ -41,6 +43,7 @@ def check_run_threads(threads: int | None, writes: bool) -> None:
 def startable(most: int) -> int:
     """How many threads can be started now, at most `most`. They are started and end."""
     done, begun = threading.Event(), []
+    usual = threading.stack_size(STACK)
     try:
         for _ in range(most):
             thread = threading.Thread(target=done.wait, daemon=True)
@@ -49,6 +52,7 @@ def startable(most: int) -> int:
     except (RuntimeError, MemoryError):  # of processes, or of addresses for a stack
         pass
     finally:
+        threading.stack_size(usual)
         done.set()
         for thread in begun:
             thread.join()

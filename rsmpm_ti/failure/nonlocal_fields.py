@@ -1,7 +1,7 @@
 """Mean stress and mean crack strain over a length of the rock: spread to nodes, blurred along each axis, read back.
 
-2D. A look for cracks needs them only near what is cracked or has tension of its own beyond the strength, since a mean is
-no larger than the largest that it is taken over; the grid is averaged there tile by tile, with the same sums.
+2D. A look for cracks needs them only near what is cracked or has tension of its own beyond the strength, since a mean
+is no larger than the largest that it is taken over; the grid is averaged there, tile by tile, with the same sums.
 """
 
 import taichi as ti
@@ -11,7 +11,6 @@ from rsmpm_ti.fields.parallel import over_particles
 from rsmpm_ti.fields.stencil import coordinates, per_metre, weights_at
 from rsmpm_ti.method.tensor_product import tensor_gradient, tensor_weight
 from rsmpm_ti.rock.tensors import extreme_principals
-
 
 RESULT, SOURCE = 2, 1
 """What is needed of a tile: means at its nodes, or only its sums for those of others; or 0."""
@@ -32,6 +31,19 @@ def need_all_tiles(sim: ti.template()):
         sim.nonlocal_sums.needed[tile] = RESULT
 
 
+@ti.func
+def need_of_tile(sim: ti.template(), tile):
+    """By the hot tiles around it."""
+    means, need = sim.nonlocal_sums, 0
+    near, far = ti.static(means.result_tiles, means.result_tiles + means.source_tiles)
+    for a in range(ti.max(tile[0] - far, 0), ti.min(tile[0] + far + 1, means.hot.shape[0])):
+        for b in range(ti.max(tile[1] - far, 0), ti.min(tile[1] + far + 1, means.hot.shape[1])):
+            if means.hot[a, b] == 1:
+                away = ti.max(ti.abs(a - tile[0]), ti.abs(b - tile[1]))
+                need = ti.max(need, ti.select(away <= near, RESULT, SOURCE))
+    return need
+
+
 @ti.kernel
 def needed_tiles(sim: ti.template(), limit: float) -> ti.i32:
     """Find what is needed of each tile if means below `limit` [Pa] are of no interest; returns whether any is."""
@@ -44,14 +56,8 @@ def needed_tiles(sim: ti.template(), limit: float) -> ti.i32:
             means.hot[sim.grid.base(coordinates(sim, p, sim.grid.frame()), sim.shape) // TILE] = 1
             means.any_hot[None] = 1
     for tile in ti.grouped(means.needed):
-        far = ti.static(means.result_tiles + means.source_tiles)
-        need = 0
-        for offset in ti.grouped(ti.ndrange((-far, far + 1), (-far, far + 1))):
-            other = tile + offset
-            if (other >= 0).all() and (other < ti.Vector(means.hot.shape)).all() and means.hot[other] == 1:
-                near = ti.abs(offset).max() <= means.result_tiles
-                need = ti.max(need, ti.select(near, RESULT, SOURCE))
-        means.needed[tile] = need
+        if means.any_hot[None] == 1:
+            means.needed[tile] = need_of_tile(sim, tile)
     return means.any_hot[None]
 
 

@@ -34,8 +34,9 @@ class NonlocalSums:
         tiles = tuple(-(-n // TILE) for n in grid.nodes)
         self.hot, self.needed, self.any_hot = ti.field(ti.i32, tiles), ti.field(ti.i32, tiles), ti.field(ti.i32, ())
         width = scene.shape.width - 1
-        self.result_tiles = -(-(self.reach + 2 * width) // TILE)  # from a hot particle's to all whose mean it is part of
-        self.source_tiles = -(-(self.reach + width) // TILE)  # and from those to all that they take it from
+        # from a hot particle's tile to all whose means it is part of, and from those to all that they take them from
+        self.result_tiles = -(-(self.reach + 2 * width) // TILE)
+        self.source_tiles = -(-(self.reach + width) // TILE)
         band = scene.shape.crack_band * scene.domain.dx
         self.band_fraction = scene.rock.nonlocal_mean.band_fraction(band)
         self.variance = scene.rock.nonlocal_mean.band_variance(band)

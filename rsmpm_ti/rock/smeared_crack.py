@@ -6,8 +6,8 @@ a crack carries nothing until its faces meet again. In the frame of the crack (n
 
     s_nn = a - M e_n - lam e_t,    s_tt = b - lam e_n - M e_t,    s_zz = c - lam_z (e_n + e_t),
 
-where a, b, c are what the stresses would be if the cracks were closed. The stress of a step: crack_return.py, and
-crushed_rock.py for rock that has failed in shear.
+where a, b, c are what the stresses would be if the cracks were closed. The stress of a step: broken/crack_return.py,
+and crushed_rock.py beside it for rock that has failed in shear.
 """
 
 import math
@@ -21,7 +21,7 @@ from annotated_types import Interval
 from rsmpm_ti.checks import ByType, Positive, checked
 from rsmpm_ti.errors import refuse
 from rsmpm_ti.rock.after_failure import AfterFailure, Variable
-from rsmpm_ti.rock.crack_return import (
+from rsmpm_ti.rock.broken.crack_return import (
     MIN_CRACK_STRAIN,
     crack_return,
     has_failed,
@@ -46,7 +46,7 @@ class Directional(AfterFailure):
     no tension; what it is open by is pores, which must close before it bears pressure. While it slides with pores shut
     it dilates by `dilation_angle` [degrees], at most phi_r, which falls by e over a slip of `dilation_slip` [m].
     `rotating`: the crack turns with the principal stress, so that no shear acts on it; otherwise it is fixed in the
-    rock and turns only with it. The parts of each are in crack_return.py and crushed_rock.py.
+    rock and turns only with it.
     """
 
     residual_friction_angle: Annotated[Angle, Interval(ge=0.0, le=89.0)] = 30.0

@@ -101,8 +101,7 @@ def _tuple(entries):
 class Run:
     """One run: the loop, and what is written when. Starts Taichi.
 
-    kept: arrays of the checkpoint from which it goes on, None for a run from the start; said: what of the scene is hard
-    to believe, in sentences.
+    kept: arrays of the checkpoint from which it goes on, None for one from the start; said: sentences of doubt.
     """
 
     def __init__(
@@ -325,10 +324,9 @@ class Run:
         return self.wall_before + time.perf_counter() - self.started
 
     def _tell(self, view) -> None:
-        if self.settings.progress is None:
-            return
         try:
-            self.settings.progress(self._progress(view))
+            if self.settings.progress is not None:
+                self.settings.progress(self._progress(view))
         except (Exception, SystemExit, GeneratorExit) as error:
             raise ObserverError(f"progress failed: {type(error).__name__}: {error}") from error
 
@@ -344,8 +342,8 @@ class Run:
         )
 
     def speed(self) -> float:
-        solving = time.perf_counter() - self.started - self.painting_s
-        return self.sim.particles.count * (self.clock.step - self.steps_before) / max(solving, 1e-9)
+        solving = max(time.perf_counter() - self.started - self.painting_s, 1e-9)
+        return self.sim.particles.count * (self.clock.step - self.steps_before) / solving
 
     def _abandon(self) -> None:
         if self.writer is not None:

@@ -10,7 +10,7 @@ from scipy.integrate import quad
 from scipy.stats import norm
 
 from rsmpm_ti.failure.nonlocal_fields import read_crack_strains, sum_nonlocal
-from rsmpm_ti.rock.crack_return import MIN_CRACK_STRAIN
+from rsmpm_ti.rock.broken.crack_return import MIN_CRACK_STRAIN
 from rsmpm_ti.rock.nonlocal_mean import Nonlocal
 from rsmpm_ti.spec.seeding import Lattice
 

@@ -44,7 +44,8 @@ def found(sim) -> tuple[np.ndarray, ...]:
 def test_means_of_needed_tiles_are_those_of_all(taichi_f64, length):
     sim = block(CELLS, length=length)
     rng, x = np.random.default_rng(3), positions(sim)
-    for centre, cracked in (((5.2 * DX, 50.7 * DX), False), ((31.9 * DX, 8.0 * DX), True), ((63.0 * DX, 63.0 * DX), False)):
+    for x_hot, y_hot, cracked in ((5.2, 50.7, False), (31.9, 8.0, True), (63.0, 63.0, False)):
+        centre = x_hot * DX, y_hot * DX
         sigma = rng.normal(size=(len(x), 4)) * 0.15 * LIMIT  # none of it near the limit
         near = np.linalg.norm(x - centre, axis=1) < 2.2 * length
         sigma[near, :3] += 2.0 * LIMIT
@@ -60,7 +61,7 @@ def test_means_of_needed_tiles_are_those_of_all(taichi_f64, length):
         sim.nonlocal_sums.other.fill(np.nan)
         assert needed_tiles(sim, LIMIT) == 1
         skipped = np.mean(sim.nonlocal_sums.needed.to_numpy() == 0)
-        assert skipped > 0.25
+        assert skipped > 0.2
         sum_needed(sim)
         here = found(sim)
         overloaded = everywhere[1]
@@ -76,7 +77,7 @@ def test_means_of_needed_tiles_are_those_of_all(taichi_f64, length):
 
 def test_run_cracks_as_if_all_of_the_grid_were_averaged(monkeypatch):
     """On one thread, bit for bit."""
-    scene = load_scene("cube_lab", dx=1.6e-3, length=2e-3, flaw_width=5e-3, strain_end=4e-4, settings={"shape": "Linear"})
+    scene = load_scene("cube_lab", dx=2e-3, length=2e-3, flaw_width=6e-3, strain_end=8e-4, settings={"shape": "Linear"})
     once = simulate(scene, threads=1)
 
     def all_tiles(sim, limit):

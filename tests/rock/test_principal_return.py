@@ -7,7 +7,7 @@ import pytest
 import taichi as ti
 from harness import on_rows, vector
 
-from rsmpm_ti.rock.principal_return import mohr_coulomb_return
+from rsmpm_ti.rock.broken.principal_return import mohr_coulomb_return
 
 MU, LAM = 7.46e9, 2.9e9
 PAIRS = tuple(itertools.permutations(range(3), 2))

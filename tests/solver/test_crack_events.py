@@ -14,7 +14,7 @@ from rsmpm_ti.method.shape import Linear
 from rsmpm_ti.mpm.clock import Clock
 from rsmpm_ti.output.files import write_events
 from rsmpm_ti.rock.after_failure import Clipped, CompressionOnly
-from rsmpm_ti.rock.crack_return import MIN_CRACK_STRAIN
+from rsmpm_ti.rock.broken.crack_return import MIN_CRACK_STRAIN
 from rsmpm_ti.rock.criteria import MohrCoulomb
 from rsmpm_ti.rock.elasticity import Hooke
 from rsmpm_ti.rock.nonlocal_mean import Local, Nonlocal

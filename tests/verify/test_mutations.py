@@ -53,9 +53,9 @@ MUTATIONS = {
     "crushed rock free to slip out of the plane": (
         [
             (
-                "rock/crack_return.py",
-                "ti.max(ti.min(s[2], least_pressed), most_pressed)",
-                "ti.max(s[2], most_pressed)",
+                "rock/broken/crushed_rock.py",
+                "return found\n\n\n@ti.func\ndef flow_in_plate",
+                "found[2] = z\n    return found\n\n\n@ti.func\ndef flow_in_plate",
             )
         ],
         "cracked_cell",
@@ -124,9 +124,8 @@ MUTATIONS = {
         [
             (
                 "rock/elasticity.py",
-                "return rotated + isotropic(self.lam * trace(d_eps), sigma.n) + 2.0 * self.mu * d_eps",
-                "out = rotated + isotropic(self.lam * trace(d_eps), sigma.n) + 2.0 * self.mu * d_eps\n"
-                "        out[2] = 0.0\n        return out",
+                "return rotated + self.load(d_eps)",
+                "out = rotated + self.load(d_eps)\n        out[2] = 0.0\n        return out",
             )
         ],
         "envelope",

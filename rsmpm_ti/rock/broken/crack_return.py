@@ -8,8 +8,8 @@ import math
 
 import taichi as ti
 
+from rsmpm_ti.rock.broken.crushed_rock import crushed_stress
 from rsmpm_ti.rock.criteria import load_factors, strengths
-from rsmpm_ti.rock.crushed_rock import crushed_stress
 from rsmpm_ti.rock.tensors import (
     double_contraction,
     extreme_principals,

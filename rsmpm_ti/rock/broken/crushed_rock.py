@@ -14,8 +14,8 @@ In a plate (plane stress) the third stress is 0, and mean stress and volume are 
 
 import taichi as ti
 
+from rsmpm_ti.rock.broken.principal_return import mohr_coulomb_return
 from rsmpm_ti.rock.criteria import strengths
-from rsmpm_ti.rock.principal_return import mohr_coulomb_return
 
 
 @ti.func
