@@ -1,4 +1,4 @@
-"""python -m rsmpm_ti.bench speed | passes | scaling | fill | memory | start | runs | error."""
+"""python -m rsmpm_ti.bench speed | passes | scaling | fill | lab | memory | start | runs | error."""
 
 import argparse
 import os
@@ -27,6 +27,10 @@ def parser() -> argparse.ArgumentParser:
     fill = what.add_parser("fill", help="the sparse grid over the dense one, against how much of the grid is filled")
     fill.add_argument("--threads", type=int, default=1)
     fill.add_argument("--rounds", type=int, default=9)
+    lab = what.add_parser("lab", help="the rock of cube_lab over the paper's rule, whole and at its peak")
+    lab.add_argument("--dx", type=float, default=5e-4, help="cell size [m]")
+    lab.add_argument("--threads", type=int, default=1)
+    lab.add_argument("--rounds", type=int, default=9)
     memory = what.add_parser("memory", help="bytes per particle")
     memory.add_argument("scenes", nargs="*", default=["intact", "cube", "disc", "cube_lab"])
     start = what.add_parser("start", help="seconds until the first step, with and without kept kernels")
@@ -70,6 +74,10 @@ def _measure(options: argparse.Namespace) -> str:
         from rsmpm_ti.bench.fill import fill
 
         return fill(options.threads, options.rounds)
+    if options.what == "lab":
+        from rsmpm_ti.bench.lab_rock import lab_rock
+
+        return lab_rock(options.dx, options.threads, options.rounds)
     if options.what == "memory":
         from rsmpm_ti.bench.scaling import memory
 

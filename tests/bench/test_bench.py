@@ -134,3 +134,13 @@ def test_fill_compares_both_grids_where_the_same_is_filled(capsys, monkeypatch):
     for row in rows:
         assert 5.0 < float(row[2]) < 100.0 * np.pi * 25.0 / 900.0, "pi r^2 over nodes, more than the cells"
         assert float(row[3]) > 0.0
+
+
+def test_lab_rock_is_measured_whole_and_cracked(capsys, monkeypatch):
+    from rsmpm_ti.bench import lab_rock
+
+    monkeypatch.setattr(lab_rock, "PEAK", 1e-5)
+    assert main(["lab", "--dx", "1e-3", "--rounds", "1", "--threads", "2"]) == 0
+    lines = capsys.readouterr().out.splitlines()
+    assert [line[:24].strip() for line in lines[2:]] == ["the paper's rule", "cube_lab, whole", "cube_lab, at its peak"]
+    assert float(lines[2].split()[-1]) == 1.0 and all(float(line.split()[-1]) > 0.1 for line in lines[3:])
