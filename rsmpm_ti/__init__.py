@@ -12,7 +12,7 @@ import warnings
 from importlib.util import find_spec
 
 import rsmpm_ti.backend.forks  # noqa: F401  (a fork from here on is known to be one)
-from rsmpm_ti.ctrl_c import leave_in_a_line
+from rsmpm_ti.ctrl_c import leave_in_a_line, module_of
 
 __version__ = "0.1.0"
 
@@ -24,11 +24,9 @@ NEEDED = (
 
 def _is_command() -> bool:
     """Whether this process is `python -m rsmpm_ti...` or the console command, and no program that imports us."""
-    words = getattr(sys, "orig_argv", [])
-    module = words[words.index("-m") + 1 :][:1] if "-m" in words else []
     program = [os.path.splitext(os.path.basename(word))[0] for word in getattr(sys, "argv", [])[:1]]
     archive = os.path.dirname(os.path.dirname(__file__))  # by `python -m zipapp`: a program that is run as it is
-    named = module[:1] != [] and module[0].split(".")[0] == "rsmpm_ti" or program == ["rsmpm_ti"]
+    named = module_of(sys.orig_argv[1:]).split(".")[0] == "rsmpm_ti" or program == ["rsmpm_ti"]
     return named or os.path.isfile(archive) and os.path.abspath(sys.argv[0]) == os.path.abspath(archive)
 
 

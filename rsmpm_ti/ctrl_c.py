@@ -12,6 +12,27 @@ from collections.abc import Iterator
 LINE = "rsmpm_ti: stopped by Ctrl-C; what is complete is kept"
 
 
+def module_of(words: list[str]) -> str:
+    """The module that Python is asked to run by the words of its command line, without its own name; "" if none is.
+
+    Its options end where the program or its module is named, and may be joined: `-um rsmpm_ti.scene`, `-mrsmpm_ti`.
+    """
+    rest = iter(words)
+    for word in rest:
+        if not word.startswith("-") or word == "-":
+            return ""
+        for k, letter in enumerate(word[1:], start=2):
+            if word == "--check-hash-based-pycs" or letter in "WX" and not word[k:]:
+                next(rest, "")  # what it is given
+            if letter == "m":
+                return word[k:] or next(rest, "")
+            if letter == "c":
+                return ""
+            if letter in "WX-":
+                break
+    return ""
+
+
 def _leave(*_) -> None:
     """There is nothing to tidy up, and an exception may be lost in what is imported."""
     if sys.stderr is not None:

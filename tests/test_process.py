@@ -18,6 +18,7 @@ from snapshots import snapshot_of
 from writer_orders import NO_ROWS, started
 
 from rsmpm_ti.__main__ import COMMANDS
+from rsmpm_ti.ctrl_c import module_of
 from rsmpm_ti.process import no_current_folder
 
 ROOT = Path(__file__).resolve().parent.parent
@@ -219,3 +220,26 @@ def test_a_package_within_an_archive_says_that_it_must_be_files(tmp_path, how):
     assert (done.returncode, done.stdout) == (2, "")
     said = f"rsmpm_ti cannot run from within {tmp_path / 'x.pyz'}: it must be installed as files, by `pip install "
     assert done.stderr == f"{said}rsmpm_ti`\n"
+
+
+@pytest.mark.parametrize(
+    "words, module",
+    [
+        ("-m rsmpm_ti.scene cube", "rsmpm_ti.scene"),
+        ("-mrsmpm_ti.scene cube", "rsmpm_ti.scene"),
+        ("-um rsmpm_ti.scene cube -m other", "rsmpm_ti.scene"),
+        ("-X dev -W error -umrsmpm_ti", "rsmpm_ti"),
+        ("-Xdev -Werror -m rsmpm_ti", "rsmpm_ti"),
+        ("--check-hash-based-pycs always -m rsmpm_ti", "rsmpm_ti"),
+        ("prog.py -m rsmpm_ti", ""),
+        ("-c pass -m rsmpm_ti", ""),
+        ("-uc pass -m rsmpm_ti", ""),
+        ("- -m rsmpm_ti", ""),
+        ("-W m rsmpm_ti", ""),
+        ("-m pytest -m rsmpm_ti", "pytest"),
+        ("", ""),
+    ],
+)
+def test_only_what_python_was_asked_to_run_makes_a_command(words, module):
+    """A program that imports the package keeps its own Ctrl-C, whatever its arguments."""
+    assert module_of(words.split()) == module

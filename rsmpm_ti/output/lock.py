@@ -65,11 +65,10 @@ class Lock:
             return
         descriptor = None
         try:
-            flags = os.O_RDWR | os.O_CREAT | NOT_BEYOND
-            descriptor = os.open(self._path, flags | (os.O_EXCL if fcntl is None else 0), 0o644)
+            descriptor, made = self._open()
             if fcntl is not None:
                 fcntl.flock(descriptor, fcntl.LOCK_EX | fcntl.LOCK_NB)
-            if os.read(descriptor, 100) not in (b"", self._line) or not self._is(descriptor):
+            if os.read(descriptor, 100) != (b"" if made else self._line) or not self._is(descriptor):
                 raise FileExistsError
         except OSError:
             if descriptor is not None:
@@ -87,14 +86,29 @@ class Lock:
             f"the lock {FILE} of {self._folder} was removed during the run, and {who}: nothing more is written there"
         )
 
+    def _open(self) -> tuple[int, bool]:
+        """A descriptor of the lock's file, and whether it was made here. Raises FileExistsError for what is no lock."""
+        with contextlib.suppress(FileExistsError):
+            return os.open(self._path, os.O_RDWR | os.O_CREAT | os.O_EXCL | NOT_BEYOND, 0o644), True
+        found = os.lstat(self._path)
+        # a second name of it is that of a file of somebody else; nothing but a file is so much as opened
+        if fcntl is None or not stat.S_ISREG(found.st_mode) or found.st_nlink != 1:
+            raise FileExistsError
+        return os.open(self._path, os.O_RDWR | NOT_BEYOND), False
+
     def _take(self) -> int | None:
         """A descriptor of a new file that is locked; None while another process has it."""
         while True:
-            flags = os.O_RDWR | os.O_CREAT | NOT_BEYOND
             try:
-                descriptor = os.open(self._path, flags | (os.O_EXCL if fcntl is None else 0), 0o644)
+                descriptor, made = self._open()
+            except FileNotFoundError:  # removed in between
+                if not self._folder.is_dir():
+                    raise
+                continue
             except FileExistsError:
-                return None
+                if fcntl is None:
+                    return None
+                raise self._foreign() from None
             except OSError as error:
                 if error.errno == errno.ELOOP:
                     raise self._foreign() from None
@@ -104,12 +118,11 @@ class Lock:
             try:
                 fcntl.flock(descriptor, fcntl.LOCK_EX | fcntl.LOCK_NB)
                 if self._is(descriptor):
-                    found = os.fstat(descriptor)
-                    if found.st_size == 0 and stat.S_ISREG(found.st_mode):
+                    if made:
                         return descriptor
-                    if self._holder()[0] == 0:
+                    if os.fstat(descriptor).st_size > 0 and self._holder()[0] == 0:
                         raise self._foreign()
-                    self._path.unlink()  # of a run that was killed
+                    self._path.unlink()  # of a run that was killed, before it could write into it or later
             except BlockingIOError:
                 os.close(descriptor)
                 return None

@@ -113,3 +113,50 @@ def test_a_lock_that_another_has_taken_meanwhile_is_told(tmp_path, other):
         assert path.lstat() == there and [p.name for p in tmp_path.iterdir()] == [lock.FILE]
     if other == "a run":
         second.release()
+
+
+def strangers(path: Path, kind: str) -> Path | None:
+    """Something under the lock's name that no run made; the file behind it, if any."""
+    behind = path.parent.parent / "precious.txt"
+    if kind == "second name of an empty file":
+        behind.touch()
+        os.link(behind, path)
+        return behind
+    if kind == "link":
+        behind.write_text("mine")
+        path.symlink_to(behind)
+        return behind
+    if kind == "pipe":
+        os.mkfifo(path)
+    elif kind == "folder":
+        path.mkdir()
+    else:
+        path.write_text("notes")
+    return None
+
+
+@pytest.mark.parametrize("kind", ["second name of an empty file", "link", "pipe", "folder", "file"])
+@pytest.mark.parametrize("when", ["before", "during"])
+def test_what_a_stranger_put_in_the_place_of_a_lock_is_left_as_it_is(tmp_path, kind, when):
+    (tmp_path / "out").mkdir()
+    path = tmp_path / "out" / lock.FILE
+    if when == "before":
+        behind = strangers(path, kind)
+        held = behind and behind.read_bytes()
+        assert "is no lock of a run" in refusal(tmp_path / "out")
+    else:
+        first = lock.Lock(tmp_path / "out")
+        path.unlink()
+        behind = strangers(path, kind)
+        held = behind and behind.read_bytes()
+        with pytest.raises(SceneError, match="something else has its place"):
+            first.keep()
+        first.release()
+    assert os.path.lexists(path)
+    assert behind is None or behind.read_bytes() == held
+
+
+def test_an_empty_lock_of_a_run_that_was_killed_as_it_made_it_is_replaced(tmp_path):
+    (tmp_path / lock.FILE).touch()
+    lock.Lock(tmp_path).release()
+    assert not list(tmp_path.iterdir())
