@@ -71,11 +71,11 @@ def _measure(options: argparse.Namespace) -> str:
 
         return scaling(options.rounds, options.threads, options.shape)
     if options.what == "fill":
-        from rsmpm_ti.bench.fill import fill
+        from rsmpm_ti.bench.ratios import fill
 
         return fill(options.threads, options.rounds)
     if options.what == "lab":
-        from rsmpm_ti.bench.lab_rock import lab_rock
+        from rsmpm_ti.bench.ratios import lab_rock
 
         return lab_rock(options.dx, options.threads, options.rounds)
     if options.what == "memory":

@@ -124,10 +124,10 @@ def test_scaling_names_particles_and_takes_few_steps_of_many():
 
 @pytest.mark.validation
 def test_fill_compares_both_grids_where_the_same_is_filled(capsys, monkeypatch):
-    from rsmpm_ti.bench import fill
+    from rsmpm_ti.bench import ratios
 
-    monkeypatch.setattr(fill, "EDGES", {2: (30,), 3: ()})
-    monkeypatch.setattr(fill, "RADIUS", {2: 5})
+    monkeypatch.setattr(ratios, "EDGES", {2: (30,), 3: ()})
+    monkeypatch.setattr(ratios, "RADIUS", {2: 5})
     assert main(["fill", "--rounds", "1"]) == 0
     rows = [line.split() for line in capsys.readouterr().out.splitlines()[2:]]
     assert [row[:2] for row in rows] == [["linear", "2"], ["bspline", "2"]]
@@ -137,9 +137,9 @@ def test_fill_compares_both_grids_where_the_same_is_filled(capsys, monkeypatch):
 
 
 def test_lab_rock_is_measured_whole_and_cracked(capsys, monkeypatch):
-    from rsmpm_ti.bench import lab_rock
+    from rsmpm_ti.bench import ratios
 
-    monkeypatch.setattr(lab_rock, "PEAK", 1e-5)
+    monkeypatch.setattr(ratios, "PEAK", 1e-5)
     assert main(["lab", "--dx", "1e-3", "--rounds", "1", "--threads", "2"]) == 0
     lines = capsys.readouterr().out.splitlines()
     assert [line[:24].strip() for line in lines[2:]] == ["the paper's rule", "cube_lab, whole", "cube_lab, at its peak"]

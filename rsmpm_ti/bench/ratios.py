@@ -1,8 +1,10 @@
-"""`bench fill`: a step on the sparse grid over one on the dense grid, against how much of the grid holds material."""
+"""One step over another: `bench fill`, the sparse grid over the dense one, against how much of it holds material;
+`bench lab`, the rock of `cube_lab` over one of the paper's rule, whole and at the peak load."""
 
 import statistics
 import time
 from collections.abc import Iterator
+from dataclasses import replace
 from itertools import product
 
 RADIUS = {2: 40, 3: 12}
@@ -12,6 +14,11 @@ EDGES = {2: (120, 200, 260, 340, 450, 600), 3: (30, 40, 52, 68, 88, 115)}
 """Of the box around it, in cells."""
 
 STEPS = 10
+
+LAB_STEPS = 40
+
+PEAK = 6e-4
+"""Platen strain at which `cube_lab` bears the most, about."""
 
 
 def fill(threads: int, rounds: int) -> str:
@@ -61,3 +68,42 @@ def ball_in_a_box(shape: str, dim: int, grid: str, edge: int):
         shape=SHAPES[shape](dim),
         schedule=Schedule(t_end=1e-4),
     )
+
+
+def lab_rock(dx: float, threads: int, rounds: int) -> str:
+    """Table of nanoseconds per particle-step, all in turn in one run. dx: cell size [m]."""
+    from rsmpm_ti import CompressionOnly, Local, load_scene
+    from rsmpm_ti.backend.start import start_taichi
+    from rsmpm_ti.solver.advance import Drive
+
+    real, _ = start_taichi("f64", "cpu", threads)
+    scene = load_scene("cube_lab", dx=dx)
+    papers = replace(scene, rock=replace(scene.rock, after_failure=CompressionOnly(), nonlocal_mean=Local()))
+    drives = {"the paper's rule": Drive(papers, scene.particles(), real)}
+    drives |= {name: Drive(scene, scene.particles(), real) for name in ("cube_lab, whole", "cube_lab, at its peak")}
+    for drive in drives.values():
+        drive.advance(2)
+    last = drives["cube_lab, at its peak"]
+    while last.clock.strain < PEAK:
+        last.advance(LAB_STEPS)
+    taken: dict[str, list[float]] = {name: [] for name in drives}
+    for _ in range(rounds):
+        for name, drive in drives.items():
+            taken[name].append(_seconds(drive))
+    median = {
+        name: statistics.median(seconds) / (LAB_STEPS * last.sim.particles.count) for name, seconds in taken.items()
+    }
+    first = median["the paper's rule"]
+    lines = [f"dx {1e3 * dx:g} mm, f64, {threads} thread(s), median of {rounds} rounds of {LAB_STEPS} steps in turn"]
+    lines.append(f"{'':<24}{'ns':>8}{'ratio':>8}")
+    return "\n".join(lines + [f"{name:<24}{1e9 * value:>8.1f}{value / first:>8.2f}" for name, value in median.items()])
+
+
+def _seconds(drive) -> float:
+    import taichi as ti
+
+    ti.sync()
+    start = time.perf_counter()
+    drive.clock.advance(LAB_STEPS)
+    ti.sync()
+    return time.perf_counter() - start
