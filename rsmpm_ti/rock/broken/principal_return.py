@@ -30,18 +30,15 @@ def mohr_coulomb_return(s: ti.template(), sin_phi, sin_psi, c_cos_phi, lam, mu):
         own = up * large - down * small  # and from the excess on it
         slip = excess / own
         out = s - slip * ti.Vector([large, aside, small])
+        # at an edge two planes are reached: own a + cross b = excess, cross a + own b = second, and slip = a + b
         if out[0] < out[1]:  # the edge where the two larger are equal
             cross, second = up * aside - down * small, excess_shear(s[1], s[2], sin_phi, c_cos_phi)
-            det = own * own - cross * cross
-            a, b = (own * excess - cross * second) / det, (own * second - cross * excess) / det
-            slip = a + b
+            slip = (excess + second) / (own + cross)
             pressed, other = s[2] - slip * small, 0.5 * (s[0] + s[1] - slip * (large + aside))
             out = ti.Vector([other, other, pressed])
         elif out[1] < out[2]:  # the two smaller
             cross, second = up * large - down * aside, excess_shear(s[0], s[1], sin_phi, c_cos_phi)
-            det = own * own - cross * cross
-            a, b = (own * excess - cross * second) / det, (own * second - cross * excess) / det
-            slip = a + b
+            slip = (excess + second) / (own + cross)
             pulled, other = s[0] - slip * large, 0.5 * (s[1] + s[2] - slip * (small + aside))
             out = ti.Vector([pulled, other, other])
         if not (out[0] >= out[1] and out[1] >= out[2]):  # so near the tip that round-off decides
