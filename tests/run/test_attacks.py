@@ -76,11 +76,14 @@ def test_a_part_of_somebodys_list_is_in_the_way(tmp_path):
 
 def test_a_folder_that_took_the_place_of_the_runs_is_not_written_into(tmp_path):
     """The painter is behind the solver, and looks itself."""
-    out, mine = tmp_path / "out", {}
+    out, mine, deadline = tmp_path / "out", {}, time.monotonic() + 120.0
 
-    def progress(p):
-        if not mine and (out / "frames" / "cracks_0001.png").exists():
-            time.sleep(0.5)  # the painter has done what it was told to so far
+    def progress(_):
+        if not mine:
+            while not (out / "frames" / "cracks_0000.png").exists():  # the painter starts slowly on a busy machine
+                time.sleep(0.05)
+                assert time.monotonic() < deadline
+            time.sleep(0.5)  # it has done what it was told to so far
             out.rename(tmp_path / "elsewhere")
             shutil.copytree(tmp_path / "elsewhere", out)
             for path in out.rglob("*"):
