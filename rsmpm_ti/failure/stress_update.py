@@ -3,7 +3,7 @@
 import taichi as ti
 
 from rsmpm_ti.rock.criteria import load_factors
-from rsmpm_ti.rock.tensors import extreme_principals, principal_normal
+from rsmpm_ti.rock.tensors import double_contraction, extreme_principals, principal_normal, symmetric
 
 
 @ti.func
@@ -81,16 +81,21 @@ def check_failure(sim: ti.template(), p, dt, time, slot):
     What failed rock carries, what that costs and when it is an event is for the law after failure to say.
     """
     particles, law = sim.particles, sim.rock.after_failure
-    extremes, failed, dissipated = extreme_principals(particles.sigma[p]), 0, 0.0
+    extremes, failed, dissipated, lost_work = extreme_principals(particles.sigma[p]), 0, 0.0, 0.0
     if particles.mode[p] == 0:
         mode = failure_by_own_stress(sim, p, extremes)
         if mode != 0:
             dissipated += start_failure(sim, p, mode, principal_normal(particles.sigma[p]), time)
+            lost_work = 0.5 * particles.J[p]
     else:
         failed = law.failed_mode(sim, p)
     if particles.mode[p] != 0:
         sigma, more = law.respond(sim, p, dt * particles.L[p], dt)
         dissipated += more
+        if ti.static(not law.softens):
+            # half of the step went by with the stress that is lost: trapezoidal rule, as for platens (records.py)
+            lost = particles.sigma[p] - sigma
+            dissipated -= lost_work * double_contraction(lost, symmetric(dt * particles.L[p]))
         particles.sigma[p] = sigma
         sim.ledger.released[slot] += ti.cast(particles.volume[p] * dissipated, ti.f64)
         mode = ti.max(0, ti.min(law.failed_mode(sim, p), 2))
