@@ -52,6 +52,7 @@ from .spec.loading_start import AtRest as AtRest
 from .spec.loading_start import Press as Press
 from .spec.loading_start import Program as Program
 from .spec.loading_start import Ramp as Ramp
+from .spec.quasi_static.servo import Servo as Servo
 from .spec.regions import Box as Box
 from .spec.regions import Difference as Difference
 from .spec.regions import Disc as Disc

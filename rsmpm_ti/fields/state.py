@@ -70,6 +70,10 @@ class Simulation:
         self.size = len(self.stencil)  # nodes of a stencil
         self.band = scene.shape.crack_band * scene.domain.dx
         self.confinement = scene.loading.confinement
+        self.local_damping = scene.local_damping
+        if self.local_damping > 0.0:  # which boundaries the load presses between, along which axis
+            lower, upper = scene.loading.ends
+            self.ends = self.boundaries.index(lower), self.boundaries.index(upper), lower.axis
         self.confined = self.confinement > 0.0
         x, volume, stress, J, self.J_start = seeded(scene, seeds)
         # of the stress-free rock, to go with `particles.volume`; as it starts it is the scene's

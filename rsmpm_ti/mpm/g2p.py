@@ -17,6 +17,7 @@ from rsmpm_ti.fields.stencil import (
     weights_and_gradients,
 )
 from rsmpm_ti.method.tensor_product import tensor_weight
+from rsmpm_ti.mpm.local_damping import damped
 from rsmpm_ti.mpm.p2g import field_acceleration
 
 
@@ -32,7 +33,7 @@ def spread(sim: ti.template(), w, r):
 
 
 @ti.func
-def velocity_to_particle(sim: ti.template(), p, w, xi, base, frame, v_i: ti.template(), dv_i: ti.template()):
+def velocity_to_particle(sim: ti.template(), p, w, xi, base, frame, v_i: ti.template(), dv_i: ti.template(), slot):
     """New particle velocity, and affine matrix if carried, from node velocities [stencil, dim].
 
     Returns v_pic - (v_new - v_old)/2, by which `body_work` counts.
@@ -40,7 +41,7 @@ def velocity_to_particle(sim: ti.template(), p, w, xi, base, frame, v_i: ti.temp
     particles = sim.particles
     v_pic, dv = interpolate(sim, w, v_i), interpolate(sim, w, dv_i)
     v_old = particles.v[p]
-    v_new = sim.transfer.to_particle(v_old, v_pic, dv)
+    v_new = damped(sim, p, xi, v_old, sim.transfer.to_particle(v_old, v_pic, dv), dv, slot)
     particles.v[p] = v_new
     if ti.static(particles.affine):
         B, D = ti.Matrix.zero(float, sim.dim, sim.dim), spread(sim, w, xi - base)
@@ -95,7 +96,7 @@ def nodes_to_particles(sim: ti.template(), start, stop, slot, what: ti.template(
             if ti.static(what.stress):
                 particles.L[p] = velocity_gradient(sim, w, dw, w_i)
             if ti.static(what.velocity):
-                v_middle = velocity_to_particle(sim, p, w, xi, base, frame, v_i, dv_i)
+                v_middle = velocity_to_particle(sim, p, w, xi, base, frame, v_i, dv_i, slot)
                 work += body_work(sim, p, v_middle, dt, time)
             if ti.static(what.position):
                 v_pic = interpolate(sim, w, v_i)

@@ -31,7 +31,7 @@ def remap_span(sim: ti.template(), start, stop, slot, what: ti.template(), dt, t
             p = first + k
             xi = coordinates(sim, p, frame)
             w, dw = weights_and_gradients(sim, xi, base, frame)
-            v_middle = velocity_to_particle(sim, p, w, xi, base, frame, v_i, dv_i)
+            v_middle = velocity_to_particle(sim, p, w, xi, base, frame, v_i, dv_i, slot)
             work += body_work(sim, p, v_middle, dt, time)
             add_particle(sim, p, xi, base, frame, w, dw, 0.0, m, mv, f)
         # mass is the same, and force comes from the new stress: the compiler leaves their sums out

@@ -26,6 +26,8 @@ SUMMARY = Table(
         _key("painting_cpu_s", "s", "processor time of the process that paints and writes"),
         _key("particle_steps_per_s", "1/s", "particles times steps over the solver's time"),
         _key("time_scale", "1", "mass scaling: density is multiplied by its square"),
+        _key("least_pace", "1", "least fraction of their speed at which the servo let the platens go, 1 without one"),
+        _key("local_damping_J", "J", "what local damping took, part of the dissipated energy"),
         _key("confinement_Pa", "Pa", "confining pressure"),
         _key("onset_stress_Pa", "Pa", "nominal stress at onset, compression positive"),
         _key("onset_strain", "1", "nominal strain at onset"),

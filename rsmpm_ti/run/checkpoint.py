@@ -28,8 +28,8 @@ from rsmpm_ti.solver.view import View
 from rsmpm_ti.spec.review.machine import address_space, free_memory
 from rsmpm_ti.spec.scene import Scene
 
-LEDGER = ("impulse", "work", "latest", "speed", "body_work", "viscous", "released")
-PER_SLOT = ("body_work", "viscous", "released")
+LEDGER = ("impulse", "work", "latest", "speed", "body_work", "viscous", "released", "damped")
+PER_SLOT = ("body_work", "viscous", "released", "damped")
 """Those of the ledger that have a slot for each thread: their sum is what counts."""
 
 
@@ -74,6 +74,8 @@ def take(drive, history, progress: dict, identity: dict) -> dict[str, np.ndarray
     arrays |= sim.grid.state() | sim.contacts.state() | history.state()
     arrays |= {f"dropped_{name}": np.array(value) for name, value in vars(drive.dropped).items()}
     arrays |= {f"clock_{name}": np.array(value) for name, value in drive.clock.state().items()}
+    if drive.control is not None:
+        arrays |= {f"servo_{name}": np.array(value) for name, value in drive.control.state().items()}
     arrays["end"] = np.array(drive.clock.end)
     arrays["text"] = np.array(json.dumps({"progress": progress, "identity": identity}))
     return arrays
@@ -101,7 +103,10 @@ def restore(arrays: dict[str, np.ndarray], drive, history) -> dict:
         part.resume(arrays)
     planned = drive.clock.total
     drive.clock.resume({name: arrays[f"clock_{name}"] for name in drive.clock.state()})
-    if float(arrays["end"]) != drive.clock.end:
+    if drive.control is not None:
+        drive.control.resume({name: arrays[f"servo_{name}"] for name in drive.control.state()})
+        drive.clock.keep_pace(drive.clock.pace)
+    elif float(arrays["end"]) != drive.clock.end:
         if sim.scene.schedule.adaptive:
             drive.clock.retime(drive.clock.dt)
         else:
@@ -253,6 +258,8 @@ def changed(arrays: dict[str, np.ndarray], identity: dict) -> bool:
 def check_end(arrays: dict[str, np.ndarray], scene) -> None:
     """Refuse a run that would end before the checkpoint from which it is to go on."""
     reached = float(arrays["clock_since"] + (arrays["clock_step"] - arrays["clock_first"]) * arrays["clock_dt"])
+    if scene.servo is not None:
+        reached = float(arrays["clock_loaded"])
     if scene.t_end < reached - float(arrays["clock_dt"]):  # an end is rounded up to whole steps
         name = "t_end" if scene.schedule.strain_end is None else "strain_end"
         allowed = f"such that the run ends after t = {reached:.6g} s, to where the checkpoint has come"

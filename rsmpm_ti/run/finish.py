@@ -17,7 +17,7 @@ from rsmpm_ti.records.files import plain, write_json
 from rsmpm_ti.records.result import Result
 from rsmpm_ti.run.attempts import Attempts
 from rsmpm_ti.run.warnings import kinetic_share_after, warnings_of
-from rsmpm_ti.solver.damping import damping_said, viscous_energy
+from rsmpm_ti.run.damping import damped_energy, damping_said, viscous_energy
 
 
 def finish(run, stopped: str, failure: Exception | None) -> tuple[Result, SceneError | None]:
@@ -132,6 +132,8 @@ def numbers_of(run, view, fracture: Fracture | None, speed: float, stopped: str,
         "painting_cpu_s": writer.cpu_s if writer is not None else 0.0,
         "particle_steps_per_s": speed,
         "time_scale": run.scene.time_scale,
+        "least_pace": run.drive.control.least if run.drive.control is not None else 1.0,
+        "local_damping_J": damped_energy(run.sim),
         **what_broke,
         "kinetic_share_after": kinetic_share_after(view.history, what_broke["first_failure_time_s"]),
         **(fracture.numbers() if fracture is not None else {}),

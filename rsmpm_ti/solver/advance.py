@@ -11,6 +11,7 @@ from rsmpm_ti.method.time_step import adapted
 from rsmpm_ti.mpm.clock import Clock
 from rsmpm_ti.mpm.nodes import clear_nodes
 from rsmpm_ti.mpm.stepper import LOAD, scatter_all
+from rsmpm_ti.solver.control import Control
 from rsmpm_ti.solver.guard import guard
 from rsmpm_ti.solver.outflow import Dropped, drop
 from rsmpm_ti.solver.survey import survey
@@ -35,6 +36,7 @@ class Drive:
             scatter_all(self.sim, LOAD, 0.0)
             self.sim.contacts.sit()
         self.clock = Clock(self.sim)
+        self.control = None if scene.servo is None else Control(self.sim, self.clock)
         self.survey = survey(self.sim)
         self.dropped = Dropped(count=0, mass=0.0, momentum=np.zeros(scene.dim), energy=0.0)
 
@@ -52,6 +54,9 @@ class Drive:
         if self.sim.scene.schedule.adaptive:
             self._advance_to(min(self.clock.time + steps * self.sim.scene.dt, self.clock.end))
             return
+        if self.control is not None:
+            self._load_until(min(self.clock.loaded + steps * self.sim.scene.dt, self.clock.end))
+            return
         remaining = min(steps, self.clock.total - self.clock.step)
         while remaining > 0:
             remaining -= self.take(remaining)
@@ -66,6 +71,12 @@ class Drive:
             if remaining > 0:
                 clock.retime((time - clock.time) / remaining)
                 remaining -= self.take(remaining)
+
+    def _load_until(self, loaded: float) -> None:
+        """Steps until the platens have come as far as in that time [s] at full speed, at the pace of the servo."""
+        while self.clock.loaded < loaded * (1.0 - 1e-12):
+            taken = self.take(self.control.chunk(loaded))
+            self.control.see(self.survey, taken)
 
     def take(self, most: int) -> int:
         """Take steps, at most so many, look at the particles, and sort them if they need it; how many were taken."""

@@ -12,9 +12,11 @@ stress s at first failure, with rate e', height H, closing speed e' H and the st
   smooth step's acceleration, at most 1; and while the platens still accelerate, the stress in the middle is behind that
   on them by k^2 rho (de'/dt) H^2/8.
 - In every case a step is a wave's way through part of a cell, and loads are found to within a step: l grows by dx.
+- The load is read as a median over a quarter of a transit (`analysis/load_curve.py`), which takes half of that from a
+  peak that breaks off at once: e' k H/(8 c) over the strain at failure.
 - The motion itself: kinetic over elastic energy, k^2 rho <v^2>/(s e), with the mean square of the affine velocities.
 
-The estimate is the larger of the last and the sum of the others.
+The estimate is the largest of these three: the last two, and the sum of the others.
 
 First failure is expected at s by the uniform stress of a box, or that in the middle of a disc, -3 along the load and 1
 across it in units of P/(pi R) (Hondros 1959), and at the tip of a flaw by the mean of the hoop stress of a sharp crack
@@ -38,6 +40,9 @@ from rsmpm_ti.spec.regions import Box, Difference, Disc, Slit, slits_of
 
 MAX_TIME_SCALE = 1000.0
 """Largest time scale; the smallest is 1, the true density."""
+
+READING_TRANSITS = 0.125
+"""Transits of loading that a peak is read too low by at most."""
 
 MIN_TRANSITS = 5.0
 """Wave transits of the specimen that a ramp must last."""
@@ -69,6 +74,7 @@ class Estimate:
         k, factor = time_scale, 1.0
         impedance = k * self.density * self.wave_speed * self.strain_rate
         added = impedance * self.path
+        read = self.strain_rate * READING_TRANSITS * k * self.height / self.wave_speed / self.strain
         if isinstance(self.start, Ramp):
             x, s = 0.5 * math.pi * self.wave_speed * self.start.time / (k * self.height), self._fraction
             factor = self.start.factor(s * self.start.time)
@@ -78,7 +84,7 @@ class Estimate:
         elif isinstance(self.start, AtRest):
             added += impedance * self.height
         kinetic = k * k * self.density * factor**2 * self.speed_squared / (self.stress * self.strain)
-        return max(added / self.stress, kinetic)
+        return max(added / self.stress, read, kinetic)
 
     def largest(self, tolerance: float) -> float:
         """The largest time scale with an error of at most `tolerance`, in [1, MAX_TIME_SCALE]; 1 if that errs more."""

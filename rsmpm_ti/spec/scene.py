@@ -30,6 +30,7 @@ from rsmpm_ti.spec.ground.settling import check_settling
 from rsmpm_ti.spec.load_cell import LoadCell
 from rsmpm_ti.spec.loading_start import Affine, AtRest, Press, Program, Ramp
 from rsmpm_ti.spec.mass_scaling import MAX_TIME_SCALE, estimate
+from rsmpm_ti.spec.quasi_static.servo import AUTO_DAMPING, Servo, check_quasi_static
 from rsmpm_ti.spec.regions import Region
 from rsmpm_ti.spec.review.memory import check_memory, check_seeding
 from rsmpm_ti.spec.review.placement import check_flaws, check_overlap, check_platens
@@ -82,6 +83,9 @@ class Loading:
     confinement is a pressure [Pa] on every free surface, in which bodies start at rest (see `confinement.py`).
     initial_stress is that of rock in the ground (see `ground/in_situ.py`). settle: bodies first come to rest under
     what loads them at time 0, and only then the clock starts (see `ground/settling.py`).
+    servo: slows the platens while rock breaks (see `quasi_static/servo.py`). local_damping: force against the motion over
+    the force out of balance (see `mpm/local_damping.py`). With time_scale = 'auto', which looks no further than the first
+    failure, there are both unless they are given, so that it holds to the end: `Scene.servo`, `Scene.local_damping`.
     cell: what is measured, and gauges; what it leaves open comes from the platens (see `load_cell.py`).
     """
 
@@ -102,6 +106,8 @@ class Loading:
     cell: LoadCell = LoadCell()
     initial_stress: InSitu | None = None
     settle: bool = False
+    servo: Servo | None = None
+    local_damping: Annotated[float, Interval(ge=0.0, le=0.8), Remedy("0.8 is what static problems take")] | None = None
 
     @property
     def platens(self) -> tuple[Platen, Platen] | None:
@@ -241,6 +247,7 @@ class Scene:
         check_initial_stress(self)
         check_gravity(self)
         check_settling(self)
+        check_quasi_static(self)
         check_bodies(self)
         check_loading(self)
         check_stop(self)
@@ -261,6 +268,22 @@ class Scene:
         if isinstance(self.loading.time_scale, str):
             return estimate(self).largest(self.loading.quasi_static)
         return self.loading.time_scale
+
+    @property
+    def servo(self) -> Servo | None:
+        """That of the loading; one of its own where time_scale = 'auto' is to hold while rock breaks."""
+        return Servo() if self.loading.servo is None and self._auto else self.loading.servo
+
+    @property
+    def local_damping(self) -> float:
+        """That of the loading, 0 by default; one of its own where time_scale = 'auto' is to hold while rock breaks."""
+        if self.loading.local_damping is None:
+            return AUTO_DAMPING if self._auto else 0.0
+        return self.loading.local_damping
+
+    @property
+    def _auto(self) -> bool:
+        return self.loading.time_scale == "auto" and self.rock.criterion.breaks
 
     @property
     def wave_speed(self) -> float:

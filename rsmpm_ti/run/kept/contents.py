@@ -69,9 +69,20 @@ class Contents:
         shortest = 0.0 if adaptive else self.scene.dt * (1.0 - 1e-9)
         need(shortest <= self.dt <= longest and self.dt > 0.0, f"its step is {self.dt:g} s")
         need(self.since >= 0.0 and (self.first > 0 or self.since == 0.0), f"its steps began at {self.since:g} s")
-        left = (end - self.time) / self.dt
+        pace, loaded = float(self.arrays["clock_pace"]), float(self.arrays["clock_loaded"])
+        came = self.time
+        if self.scene.servo is not None:
+            paces = [pace, *(float(self.arrays[f"servo_{name}"]) for name in ("pace", "least"))]
+            slowest = 0.5 * self.scene.servo.slowest  # steps up to the end of a row go at half of it at least
+            need(all(slowest <= one <= 1.0 + 1e-9 for one in paces), f"its platens go at {min(paces):g} of their speed")
+            need(0.0 <= loaded <= self.time * (1.0 + 1e-9), f"its platens have gone for {loaded:g} s")
+            need(float(self.arrays["servo_most_elastic"]) >= 0.0, "its elastic energy was negative")
+            came = loaded
+        else:
+            need(pace == 1.0, f"its platens go at {pace:g}")
+        left = (end - came) / (pace * self.dt)
         need(abs(left - (self.total - self.step)) <= 1.0 + 1e-9 * self.total, "its clock and its end disagree")
-        ended = end - self.time <= 2e-9 * self.scene.dt  # no step is taken over less
+        ended = end - came <= 2e-9 * self.scene.dt  # no step is taken over less
         need(not ended or self.step == self.total, "its clock is at its end and steps are left")
 
     def _check_grid(self) -> None:

@@ -38,14 +38,16 @@ def layout(scene: Scene, count: int, settings: Settings) -> dict[str, tuple[np.d
     acting = max(1, boundaries)
     add(f64, (acting, dim), "ledger_impulse", "history_impulse")
     add(f64, (acting,), "ledger_work", "ledger_latest", "ledger_speed")
-    add(f64, (SLOTS,), "ledger_body_work", "ledger_viscous", "ledger_released")
+    add(f64, (SLOTS,), "ledger_body_work", "ledger_viscous", "ledger_released", "ledger_damped")
     add(f64, (EVENTS,), "event_time")
     add(real, (EVENTS,), "event_sigma_1", "event_sigma_3", "event_released")
     oriented = scene.rock.criterion.breaks and scene.rock.after_failure.oriented
     add(real, (EVENTS, dim), "event_x", *["event_normal"] * oriented)
     add(i32, (EVENTS,), "event_mode", "event_id")
     add(i32, (3,), "event_by_mode")
-    add(f64, (), "event_onset", "end", "clock_dt", "clock_since")
+    add(f64, (), "event_onset", "end", "clock_dt", "clock_since", "clock_pace", "clock_loaded")
+    if scene.servo is not None:
+        add(f64, (), "servo_pace", "servo_least", "servo_most_elastic", "servo_dissipated")
     add(f64, (dim, 2), "grid_travel", "grid_began", "grid_velocity", "grid_answered")
     add(f64, (dim, 3), "grid_frame")
     for k, plane in enumerate(pushing_planes(scene, geometry)[0]):

@@ -8,7 +8,7 @@ import pytest
 from rsmpm_ti import Apic, BulkViscosity, NoViscosity, PicFlip, QuadraticBSpline
 from rsmpm_ti.backend.start import start_taichi
 from rsmpm_ti.cases.static_state import set_up
-from rsmpm_ti.solver.damping import damping_said, viscous_energy
+from rsmpm_ti.run.damping import damping_said, viscous_energy
 from rsmpm_ti.solver.history import History
 from rsmpm_ti.spec.boundaries import Wall
 from rsmpm_ti.spec.domain import Domain

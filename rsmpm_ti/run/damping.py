@@ -15,6 +15,11 @@ def viscous_energy(sim) -> float:
     return float(sim.ledger.viscous.to_numpy().sum(dtype=np.float64))
 
 
+def damped_energy(sim) -> float:
+    """What local damping has taken so far in a `Simulation` [J]."""
+    return float(sim.ledger.damped.to_numpy().sum(dtype=np.float64))
+
+
 def damping_said(scene, history: np.ndarray, energy_start: float, viscous: float) -> list[str]:
     """Sentences about numerical damping and artificial viscosity that took more than DAMPED_FRACTION of the energy that
     was put in: what the run started with, `energy_start` [J], and the most that was done on it.

@@ -1,0 +1,1 @@
+"""What keeps a test quasi-static while rock breaks."""

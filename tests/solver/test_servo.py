@@ -1,0 +1,69 @@
+"""A servo slows the platens while rock breaks: by its rule, by the rows of a run, and by what a user can give."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from small_scene import make, platens, refusal
+
+from rsmpm_ti import Gravity, Servo, load_scene, simulate
+from rsmpm_ti.spec.quasi_static.servo import AUTO_DAMPING, FASTER, SLOWER
+
+COARSE = {"dx": 2e-3, "flaw_width": 6e-3, "length": 4e-3}
+
+
+def slow(**changes):
+    """`cube_lab` in cells of 2 mm, without pictures."""
+    scene = load_scene("cube_lab", **COARSE)
+    loading = replace(scene.loading, servo=Servo(activity=2e-3, slowest=0.1), **changes)
+    return replace(scene, loading=loading, output=replace(scene.output, frames=0, movie=False, vtu=0))
+
+
+def test_pace_falls_while_rock_breaks_and_rises_when_it_is_quiet():
+    servo = Servo(activity=1e-3, slowest=0.1)
+    assert servo.next(1.0, 2e-3, 1.0, 0.5) == pytest.approx(SLOWER**0.5)
+    assert servo.next(0.2, 0.9e-3, 1.0, 0.5) == 0.2, "between the two it stays"
+    assert servo.next(0.2, 0.0, 1.0, 0.5) == pytest.approx(0.2 * FASTER**0.5)
+    assert servo.next(0.9, 0.0, 1.0, 10.0) == 1.0 and servo.next(0.2, 1.0, 1.0, 10.0) == 0.1
+    assert servo.next(0.2, 1.0, 0.0, 0.5) > 0.2, "a specimen that holds nothing can give nothing"
+
+
+def test_rows_are_equal_in_strain_and_time_goes_on():
+    scene = slow()
+    result = simulate(scene, threads=1)
+    strain, time = result.history["axial_strain"], result.history["time_s"]
+    rows = np.diff(strain)[1:-1]
+    # a row is so many steps at full speed; the platens' way is summed up step by step
+    np.testing.assert_allclose(rows, scene.loading.strain_rate * scene.row_steps * scene.dt, rtol=1e-6)
+    assert strain[-1] == pytest.approx(scene.schedule.strain_end, rel=2e-3)
+    pace = rows / (scene.loading.strain_rate * np.diff(time)[1:-1])
+    peak = int(np.argmax(result.history["energy_elastic_J"]))
+    assert pace[: peak // 2].min() > 0.99, "nothing slows whole rock"
+    assert pace.min() < 0.12 and result.summary["least_pace"] == pytest.approx(0.1)
+    assert result.summary["steps"] > scene.steps
+
+
+@pytest.mark.parametrize(
+    ("build", "said"),
+    [
+        (lambda: make(loading_servo=Servo(), loading_boundaries=()), "two ends"),
+        (lambda: make(loading_servo=Servo(), loading_boundaries=platens(speed=2.5e-3)), "two ends"),
+        (lambda: make(loading_servo=Servo(), schedule={"t_end": 1e-5, "adaptive": True}), "adaptive"),
+        (lambda: make(loading_servo=Servo(), loading_force_field=Gravity(b=(0.0, -1.0), ramp=1e-4)), "force_field"),
+        (lambda: Servo(activity=0.5), "servo.activity"),
+        (lambda: Servo(slowest=0.0), "servo.slowest"),
+    ],
+)
+def test_what_a_servo_cannot_do_is_refused(build, said):
+    assert said in refusal(build)
+
+
+def test_auto_holds_while_rock_breaks():
+    """It is found for the first failure; beyond it a servo keeps it, unless nothing can break."""
+    scene = load_scene("intact", time_scale="auto")
+    assert scene.servo == Servo() and scene.elastic().servo is None
+    assert scene.local_damping == AUTO_DAMPING and scene.elastic().local_damping == 0.0
+    plain = load_scene("intact", time_scale=10.0)
+    assert plain.servo is None and plain.local_damping == 0.0
+    given = replace(scene, loading=replace(scene.loading, servo=Servo(slowest=1.0), local_damping=0.0))
+    assert given.servo.slowest == 1.0 and given.local_damping == 0.0
