@@ -9,8 +9,8 @@ by them feels nothing. Here dv is a particle's, not a node's, so that rock that 
 with it what flies free: without force there is no dv. The damping never turns v - v_0 round.
 
 Energy: from v_old to v' the kinetic energy changes by the impulse times the mean velocity, for stress and damping alike
-(leapfrog). What damping takes, (v - v').((v_old + v')/2 - v_0), is dissipated; the rest of its work, (v' - v).v_0, is that
-of a force that goes along with the platens.
+(leapfrog). What damping takes, (v - v').((v_old + v')/2 - v_0), is dissipated; the rest of its work, (v' - v).v_0, is
+that of a force that goes along with the platens.
 """
 
 import taichi as ti

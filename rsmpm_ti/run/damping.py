@@ -33,7 +33,7 @@ def damping_said(scene, history: np.ndarray, energy_start: float, viscous: float
     present = history["energy_kinetic_J"] + history["energy_elastic_J"] + history["energy_dissipated_J"]
     rows = max(1, round(LAST * len(history)))
     lost = float(np.mean((put_in - present)[-rows:]))
-    said = []
+    said: list[str] = []
     if not most > 0.0:  # NaN too, where a run broke down
         return said
     if lost > DAMPED_FRACTION * most:

@@ -16,8 +16,8 @@ from rsmpm_ti.output.fracture_tables import write_fracture
 from rsmpm_ti.records.files import plain, write_json
 from rsmpm_ti.records.result import Result
 from rsmpm_ti.run.attempts import Attempts
-from rsmpm_ti.run.warnings import kinetic_share_after, warnings_of
 from rsmpm_ti.run.damping import damped_energy, damping_said, viscous_energy
+from rsmpm_ti.run.warnings import kinetic_share_after, warnings_of
 
 
 def finish(run, stopped: str, failure: Exception | None) -> tuple[Result, SceneError | None]:

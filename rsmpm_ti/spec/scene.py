@@ -83,9 +83,9 @@ class Loading:
     confinement is a pressure [Pa] on every free surface, in which bodies start at rest (see `confinement.py`).
     initial_stress is that of rock in the ground (see `ground/in_situ.py`). settle: bodies first come to rest under
     what loads them at time 0, and only then the clock starts (see `ground/settling.py`).
-    servo: slows the platens while rock breaks (see `quasi_static/servo.py`). local_damping: force against the motion over
-    the force out of balance (see `mpm/local_damping.py`). With time_scale = 'auto', which looks no further than the first
-    failure, there are both unless they are given, so that it holds to the end: `Scene.servo`, `Scene.local_damping`.
+    servo: slows the platens while rock breaks (see `quasi_static/servo.py`). local_damping: force against the motion
+    over the force out of balance (see `mpm/local_damping.py`). With time_scale = 'auto', which looks no further than
+    the first failure, there are both unless they are given, so that it holds to the end.
     cell: what is measured, and gauges; what it leaves open comes from the platens (see `load_cell.py`).
     """
 

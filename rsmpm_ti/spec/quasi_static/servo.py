@@ -1,14 +1,14 @@
 """A servo that slows the platens while rock breaks, as a stiff testing machine with feedback does.
 
 Cracks grow at the speed of waves at most, and mass scaling makes waves slow. Platens that go on at full speed meanwhile
-press on rock whose cracks have had no time to grow: the load at the peak is too high by what is loaded in a wave transit
-of the specimen, and what breaks afterwards swings. So the servo looks at the energy that breaking rock dissipates in a
-transit, over the most elastic energy that there has been. Above `activity` the platens slow down, below half of it they
-are let on, by a factor SLOWER or FASTER in each transit, so that they send no wave themselves. In the laboratory it is
-the rate of acoustic emission or the lateral strain that is held so: Terada, Yanagidani & Ehara (1984), 3rd Conf.
-Acoustic Emission, 159; Hudson, Crouch & Fairhurst (1972), Eng. Geol. 6:155. The kinetic energy comes too late: it rises
-when a crack already runs. A specimen that holds less than SPENT of its largest elastic energy has nothing more to give:
-what flies then needs no slow platens.
+press on rock whose cracks have had no time to grow: the load at the peak is too high by what is loaded in a wave
+transit of the specimen, and what breaks afterwards swings. So the servo looks at the energy that breaking rock
+dissipates in a transit, over the most elastic energy that there has been. Above `activity` the platens slow down, below
+half of it they are let on, by a factor SLOWER or FASTER in each transit, so that they send no wave themselves. In the
+laboratory it is the rate of acoustic emission or the lateral strain that is held so: Terada, Yanagidani & Ehara (1984),
+3rd Conf. Acoustic Emission, 159; Hudson, Crouch & Fairhurst (1972), Eng. Geol. 6:155. The kinetic energy comes too
+late: it rises when a crack already runs. A specimen that holds less than SPENT of its largest elastic energy has
+nothing more to give: what flies then needs no slow platens.
 
 Rock here knows no time of its own, so only the product of the platens' speed and the time scale matters: to slow the
 platens by s is to divide the time scale by s, in another clock (docs/method.md).
