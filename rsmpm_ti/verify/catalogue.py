@@ -13,12 +13,12 @@ from rsmpm_ti.verify.elastic import (
     specimen,
     waves,
 )
-from rsmpm_ti.verify.laboratory import bending, friction, platens, strength_tests
+from rsmpm_ti.verify.laboratory import bending, friction, platens, residual, strength_tests
 from rsmpm_ti.verify.strength import cracked_cell, envelope, failed_cell, first_failure, triaxial, weibull
 
 MODULES = (
     waves, bodies, relaxation, energy, manufactured, specimen, triaxial, envelope, failed_cell, cracked_cell, disc,
-    hole, slit_field, open_slit, first_failure, weibull, strength_tests, platens, friction,
+    hole, slit_field, open_slit, first_failure, weibull, strength_tests, residual, platens, friction,
     bending,
 )  # fmt: skip
 

@@ -6,9 +6,10 @@ import numpy as np
 import pytest
 from small_scene import make, platens, refusal
 
-from rsmpm_ti import Gravity, Servo, load_scene, simulate
+from rsmpm_ti import Gravity, Output, Servo, load_scene, simulate
 from rsmpm_ti.spec.quasi_static.servo import AUTO_DAMPING, FASTER, SLOWER
 
+QUIET = Output(frames=0, movie=False, vtu=0)
 COARSE = {"dx": 2e-3, "flaw_width": 6e-3, "length": 4e-3}
 
 
@@ -16,7 +17,7 @@ def slow(**changes):
     """`cube_lab` in cells of 2 mm, without pictures."""
     scene = load_scene("cube_lab", **COARSE)
     loading = replace(scene.loading, servo=Servo(activity=2e-3, slowest=0.1), **changes)
-    return replace(scene, loading=loading, output=replace(scene.output, frames=0, movie=False, vtu=0))
+    return replace(scene, loading=loading, output=QUIET)
 
 
 def test_pace_falls_while_rock_breaks_and_rises_when_it_is_quiet():
@@ -67,3 +68,15 @@ def test_auto_holds_while_rock_breaks():
     assert plain.servo is None and plain.local_damping == 0.0
     given = replace(scene, loading=replace(scene.loading, servo=Servo(slowest=1.0), local_damping=0.0))
     assert given.servo.slowest == 1.0 and given.local_damping == 0.0
+
+
+def test_slower_platens_are_a_smaller_time_scale():
+    """What the servo rests on: equations of rock hold with t -> 2 t: half the speeds, four times the density."""
+    fast = load_scene("cube_lab", **COARSE, time_scale=16.0)
+    slow = load_scene("cube_lab", **COARSE, time_scale=32.0)
+    halved = tuple(replace(platen, speed=0.5 * platen.speed) for platen in slow.loading.boundaries)
+    slow = replace(slow, loading=replace(slow.loading, boundaries=halved))
+    runs = [simulate(replace(scene, output=QUIET), threads=1).history for scene in (fast, slow)]
+    for name in ("axial_strain", "force_top_N", "energy_elastic_J", "energy_dissipated_J", "failed_shear"):
+        # powers of two: the same numbers but for round-off, which a run that breaks multiplies
+        np.testing.assert_allclose(runs[1][name], runs[0][name], rtol=1e-6, atol=1e-6 * np.abs(runs[0][name]).max())

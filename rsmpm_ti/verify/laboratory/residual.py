@@ -1,0 +1,66 @@
+"""Lab rock in a jacket to the end of its test: peak and residual strength, with `time_scale = auto` as a user gives it.
+
+Peak: Mohr-Coulomb's line, sigma_1 = UCS + N_phi p. Residual: a fault slides with the residual friction angle phi_r and
+no cohesion, sigma_1 = N_r p, N_r = tan^2(45 + phi_r/2) (Jaeger, Cook & Zimmerman 2007, sec. 3.3 and 4.5), as the mean
+over the last tenth of the strain. That is what the weakest plane, at 45 + phi_r/2, carries; a fault at another angle
+carries more, by 3 % five degrees away.
+"""
+
+import math
+from dataclasses import replace
+
+from rsmpm_ti import load_scene, simulate
+from rsmpm_ti.analysis.load_curve import FilteredLoad
+from rsmpm_ti.cases.case import Case, Outcome, Row, relative
+from rsmpm_ti.records.history_table import nominal_stress
+from rsmpm_ti.rock.nonlocal_mean import Nonlocal
+from rsmpm_ti.rock.smeared_crack import Directional
+from rsmpm_ti.rock.softening import LinearSoftening
+from rsmpm_ti.spec.scene import Scene
+from rsmpm_ti.verify.laboratory.strength_tests import ROCKS, strength
+
+PRESSURES = (0.0, 5e6, 10e6, 20e6, 40e6)
+"""Of the jacket [Pa]."""
+
+RESIDUAL_ANGLE, DX = 35.0, 1e-3
+ENERGIES = LinearSoftening(G_f_I=60.0, G_f_II=2000.0)
+"""Of a granite [J/m^2]: G_f_I of K_Ic = 1.9 MPa sqrt(m); G_f_II of shear under pressure, Wong (1982), J. Geophys. Res.
+87:990, table 3: 10^3 to 10^4."""
+
+BEYOND = 2.0
+"""Strain at the end over that at the peak: a fault has then slipped by what its loss of strength takes."""
+
+
+def specimen(pressure: float) -> Scene:
+    """The scene `intact` of granite with cracks, in cells of 1 mm."""
+    granite = ROCKS["granite"]
+    law = Directional(residual_friction_angle=RESIDUAL_ANGLE, softening=ENERGIES)
+    rock = replace(granite, after_failure=law, nonlocal_mean=Nonlocal(length=2.0 * DX))
+    E, nu = rock.elasticity.E, rock.elasticity.nu
+    strain = BEYOND * (strength(rock, pressure) - pressure) * (1.0 - nu**2) / E
+    scene = load_scene("intact", dx=DX, strain_end=strain, time_scale="auto")
+    return replace(scene, rock=rock, loading=replace(scene.loading, confinement=pressure))
+
+
+def _rows(pressure: float) -> list[Row]:
+    scene = specimen(pressure)
+    history = simulate(scene).history
+    peak = FilteredLoad(scene).see_all(history).peak
+    late = history["axial_strain"] > 0.9 * scene.schedule.strain_end
+    residual = float(nominal_stress(history)[late].mean())
+    name, friction = f"p = {1e-6 * pressure:g} MPa", math.tan(math.radians(45.0 + 0.5 * RESIDUAL_ANGLE)) ** 2
+    read = "inertia and the reading of a peak, 1 % each"
+    rows = [relative(f"peak, {name} [Pa]", strength(scene.rock, pressure), peak, 0.02, read)]
+    if pressure:
+        why = "a fault within seven degrees of the weakest plane"
+        rows.append(relative(f"residual, {name} [Pa]", friction * pressure, residual, 0.05, why))
+    return rows
+
+
+def residual(full: bool) -> Outcome:
+    """Every pressure. quick: one."""
+    rows = [row for pressure in (PRESSURES if full else PRESSURES[3:4]) for row in _rows(pressure)]
+    return Outcome(tuple(rows), None)
+
+
+CASES = (Case("lab_residual", "peak and residual strength of cracking rock in a jacket, time_scale auto", residual),)
