@@ -26,7 +26,7 @@ turns into tension, as at an elliptic hole (Inglis 1913). d is the length of the
 averages over. Platen strain of a disc: Hertz between plates (Johnson 1985, Contact Mechanics, sec. 5.6).
 
 When it fails: it knows one flaw at a time, straight and alone, and no failure beside the platens; after the first
-failure a collapse is as violent as the mass that was added.
+failure a collapse is as violent as the mass that was added, but for a servo (`quasi_static/servo.py`).
 """
 
 import math

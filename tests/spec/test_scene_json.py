@@ -118,6 +118,7 @@ def test_scene_recorded_before_the_move_still_loads():
     path = Path(__file__).parent / "recorded_disc_lab.json"
     recorded = json.loads(path.read_text())["scene"]
     recorded["loading"] |= {"cell": to_plain(LoadCell()), "initial_stress": None, "settle": False}
+    recorded["loading"] |= {"servo": None, "local_damping": None}
     for platen in recorded["loading"]["boundaries"]:
         platen |= {"pulls": False, "force": None, "stress": None}
     recorded["schedule"]["stop_after_drop"] = None
