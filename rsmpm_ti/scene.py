@@ -118,7 +118,7 @@ def describe(scene: Scene, threads: int | None = None, file: Path | None = None)
         ("method", f"{scene.order}, {type(scene.shape).__name__}, {type(scene.transfer).__name__}"),
         ("dt", f"{scene.dt:.4g} s (mass scaling by time_scale = {scene.time_scale:g})"),
         *expectation(scene),
-        ("steps", f"{scene.steps} to t = {1e3 * scene.t_end:.4g} ms"),
+        ("steps", f"{scene.steps} to t = {1e3 * scene.t_end:.4g} ms{'' if scene.servo is None else SLOWED}"),
         (
             "estimate",
             f"about {max(seconds, 0.1):.1f} s to solve {count * scene.steps / 1e6:.3g} million particle-steps",
@@ -133,6 +133,9 @@ def area(scene: Scene, seeds: list[Seeds]) -> tuple[tuple[str, str], ...]:
     worst = max(area_errors(scene, seeds), key=abs)
     text = f"of a body's particles {round(100.0 * worst, 4) + 0.0:+.2g} % off that of its region, at most"
     return () if math.isnan(worst) else (("area" if scene.dim == 2 else "volume", text),)
+
+
+SLOWED = " at full speed; more, since a servo slows the platens while rock breaks"
 
 
 def expectation(scene: Scene) -> tuple[tuple[str, str], ...]:

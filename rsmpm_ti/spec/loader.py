@@ -285,6 +285,11 @@ def _with_fields(owner, kind, changes: dict[str, tuple[list[str], object]], dim:
         return tuple(entry(str(k), old, kinds[k]) if str(k) in inner else old for k, old in enumerate(owner))
     if not dataclasses.is_dataclass(owner) or isinstance(owner, type):
         name = next(iter(inner))
+        if owner is None:
+            whose = short(first[name]).rpartition(f".{name}")[0]
+            raise SceneError(
+                f"{short(first[name])}: {whose} is none; give it first: {phrase(kind).removesuffix(' or none')}"
+            )
         raise SceneError(f"{short(first[name])}: {shown(name)} is no field of a {type(owner).__name__}")
     names = [f.name for f in dataclasses.fields(owner)]
     for name in inner:

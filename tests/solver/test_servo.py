@@ -7,6 +7,7 @@ import pytest
 from small_scene import make, platens, refusal
 
 from rsmpm_ti import Gravity, Output, Servo, load_scene, simulate
+from rsmpm_ti.scene import main
 from rsmpm_ti.spec.quasi_static.servo import AUTO_DAMPING, FASTER, SLOWER
 
 QUIET = Output(frames=0, movie=False, vtu=0)
@@ -80,3 +81,20 @@ def test_slower_platens_are_a_smaller_time_scale():
     for name in ("axial_strain", "force_top_N", "energy_elastic_J", "energy_dissipated_J", "failed_shear"):
         # powers of two: the same numbers but for round-off, which a run that breaks multiplies
         np.testing.assert_allclose(runs[1][name], runs[0][name], rtol=1e-6, atol=1e-6 * np.abs(runs[0][name]).max())
+
+
+def test_check_says_that_steps_become_more(capsys):
+    assert main(["intact", "--check", "--set", "time_scale=auto"]) == 0
+    assert "at full speed; more, since a servo" in capsys.readouterr().out
+
+
+@pytest.mark.parametrize(
+    ("setting", "said"),
+    [
+        ("loading.servo.slowest=0.2", "loading.servo is none; give it first: Servo"),
+        ("loading.initial_stress.K0=2", "loading.initial_stress is none; give it first: InSitu"),
+    ],
+)
+def test_a_field_of_what_is_not_there_says_what_to_give(capsys, setting, said):
+    assert main(["cube_lab", "--quick", "--check", "--set", setting]) == 2
+    assert said in capsys.readouterr().err
