@@ -287,9 +287,8 @@ def _with_fields(owner, kind, changes: dict[str, tuple[list[str], object]], dim:
         name = next(iter(inner))
         if owner is None:
             whose = short(first[name]).rpartition(f".{name}")[0]
-            raise SceneError(
-                f"{short(first[name])}: {whose} is none; give it first: {phrase(kind).removesuffix(' or none')}"
-            )
+            wanted = phrase(kind).removesuffix(" or none")
+            raise SceneError(f"{short(first[name])}: {whose} is none; give it first: {wanted}")
         raise SceneError(f"{short(first[name])}: {shown(name)} is no field of a {type(owner).__name__}")
     names = [f.name for f in dataclasses.fields(owner)]
     for name in inner:
