@@ -94,12 +94,12 @@ def uniform_failure(full: bool) -> Outcome:
         relative("fraction of particles that fail", 1.0, fraction, 0.0, "all are equal"),
         at_most("steps from first failure to last", took, 4.0 * HEIGHT / 0.5, "4 transits of a wave"),
         difference("stress is finite", 1.0, float(np.isfinite(piece.by_id("sigma")).all()), 0.0, "no NaN"),
-        at_most("energy created, over the work", _created(table, start), 0.05, FIRST_ORDER),
+        at_most("energy created, over the work", _created(table, start), 0.01, SECOND_ORDER),
     ]
     return Outcome((*rows, *_energy_rows(piece, table)))
 
 
-FIRST_ORDER = "stress that fails is gone half a step too early: an error of first order, 2-3 % of the work at CFL 0.5"
+SECOND_ORDER = "the trapezoidal rule in a step in which stress is lost: 0.2 % of the work at CFL 0.5, and waves as much"
 
 
 def failure_energy(full: bool) -> Outcome:
@@ -109,8 +109,8 @@ def failure_energy(full: bool) -> Outcome:
     for cfl in (0.5, 0.25):
         table, start = press(piece, cfl, velocity)
         created.append(_created(table, start))
-        rows.append(at_most(f"CFL {cfl:g}: energy created, over the work", created[-1], 0.05, FIRST_ORDER))
-    rows.append(at_most("what half the step leaves of it", created[1] / created[0], 0.6, "first order: a half"))
+        rows.append(at_most(f"CFL {cfl:g}: energy created, over the work", created[-1], 0.01, SECOND_ORDER))
+    rows.append(at_most("what half the step leaves of it", created[1] / created[0], 0.4, "second order: a quarter"))
     fraction = len(read_events(piece.sim)) / piece.particles.count
     rows.append(at_least("fraction of particles that fail", fraction, 0.1, "enough to have something to book"))
     return Outcome((*rows, *_energy_rows(piece, table)))

@@ -15,9 +15,9 @@ BURST_LOAD = 0.5
 BURST_CREATED = 0.1
 """Largest fraction of a run's energy that may have come from nowhere when it bursts.
 
-The force of failure is booked to first order in a step, 2 to 3 % of the work where a whole specimen bursts at once
-(docs/stability.md), and 4 % in coarse cells: this is more than twice that. A run that flies apart by its numbers lives
-on energy from nowhere, and all of it is.
+Failure is booked to second order in a step, 0.2 % of the work where a whole specimen bursts (docs/stability.md);
+pieces that fly apart and cross cells add a few per cent. A run that flies apart by its numbers lives on energy from
+nowhere, and all of it is.
 """
 
 

@@ -131,8 +131,8 @@ def test_it_runs_to_its_end_and_breaks_rock_with_every_number_finite(coarse_run,
     state |= state.pop("history")
     assert [name for name, values in state.items() if not np.isfinite(values).all()] == []
     assert all(np.isfinite(getattr(result.events, column)).all() for column in ("time", "x", "sigma_1", "sigma_3"))
-    # second order in the step over the run and first order where particles fail: 2 % of the work bounds both
-    assert result.summary["energy_balance_error"] < 0.02
+    # second order in the step, failure included: a tenth of a per cent, and a few times that in coarse cells
+    assert result.summary["energy_balance_error"] < 0.01
 
 
 @every_scene
