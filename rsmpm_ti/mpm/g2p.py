@@ -41,7 +41,7 @@ def velocity_to_particle(sim: ti.template(), p, w, xi, base, frame, v_i: ti.temp
     particles = sim.particles
     v_pic, dv = interpolate(sim, w, v_i), interpolate(sim, w, dv_i)
     v_old = particles.v[p]
-    v_new = damped(sim, p, xi, v_old, sim.transfer.to_particle(v_old, v_pic, dv), dv, slot)
+    v_new = damped(sim, p, v_old, sim.transfer.to_particle(v_old, v_pic, dv), dv, slot)
     particles.v[p] = v_new
     if ti.static(particles.affine):
         B, D = ti.Matrix.zero(float, sim.dim, sim.dim), spread(sim, w, xi - base)

@@ -17,23 +17,25 @@ import taichi as ti
 
 
 @ti.func
-def platen_motion(sim: ti.template(), xi):
-    """v_0 of a particle at grid coordinates xi."""
+def platen_motion(sim: ti.template(), p):
+    """v_0 of a particle."""
     lower, upper, axis = ti.static(sim.ends)
-    first, last = ti.static(sim.grid.rows[axis])
     below, above = ti.cast(sim.ledger.speed[lower], float), ti.cast(sim.ledger.speed[upper], float)
-    part = ti.math.clamp((xi[axis] - first) / ti.static(float(last - first)), 0.0, 1.0)
+    x = sim.particles.reference[p][axis] + sim.particles.u[p][axis]
+    first = ti.cast(ti.static(sim.boundaries[lower].position) + sim.grid.travel[axis, 0], float)
+    last = ti.cast(ti.static(sim.boundaries[upper].position) + sim.grid.travel[axis, 1], float)
+    part = ti.math.clamp((x - first) / (last - first), 0.0, 1.0)
     motion = ti.Vector.zero(float, sim.dim)
     motion[axis] = below + (above - below) * part
     return motion
 
 
 @ti.func
-def damped(sim: ti.template(), p, xi, v_old, v, dv, slot):
+def damped(sim: ti.template(), p, v_old, v, dv, slot):
     """Velocity of a particle, v without damping, whose nodes changed theirs by dv; books what it loses."""
     found = v
     if ti.static(sim.local_damping > 0.0):
-        motion = platen_motion(sim, xi)
+        motion = platen_motion(sim, p)
         for d in ti.static(range(sim.dim)):
             relative = v[d] - motion[d]
             change = ti.min(sim.local_damping * ti.abs(dv[d]), ti.abs(relative))
