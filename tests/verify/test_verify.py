@@ -11,10 +11,20 @@ from rsmpm_ti.verify.__main__ import main
 from rsmpm_ti.verify.catalogue import CASES, MODULES
 from rsmpm_ti.verify.strength.weibull import strips
 
-LONGER = {"manufactured_b", "uniaxial", "lab_friction", "lab_triaxial", "lab_platens", "slit_field", "cracked_disc"}
+LONGER = {
+    "manufactured_b",
+    "uniaxial",
+    "lab_friction",
+    "lab_triaxial",
+    "lab_residual",
+    "lab_platens",
+    "slit_field",
+    "cracked_disc",
+}
 """Cases of the quick tier that the suite leaves to its own longer tier: 10 to 60 s each, and something else is like
 them. `manufactured_a` like `_b`, the hard case `uniform_failure` like `uniaxial`, `triaxial` like the jacket,
-tests/solver/test_platens.py like platens, `kirsch` and `first_failure` like the stress about a flaw."""
+tests/solver/test_platens.py like platens, tests/solver/test_servo.py like `lab_residual`, `kirsch` and `first_failure`
+like the stress about a flaw."""
 
 QUICK = [
     pytest.param(name, marks=[pytest.mark.validation] * (name in LONGER)) for name, case in CASES.items() if case.quick

@@ -4,19 +4,25 @@ Peak: Mohr-Coulomb's line, sigma_1 = UCS + N_phi p. Residual: a fault slides wit
 no cohesion, sigma_1 = N_r p, N_r = tan^2(45 + phi_r/2) (Jaeger, Cook & Zimmerman 2007, sec. 3.3 and 4.5), as the mean
 over the last tenth of the strain. That is what the weakest plane, at 45 + phi_r/2, carries; a fault at another angle
 carries more, by 3 % five degrees away.
+
+On a lattice all is symmetric, and two faults cross and hold each other: 81 MPa at p = 20 MPa, for 74 of one fault. Rock
+is not symmetric. Particles moved by a hundredth of their spacing choose one fault.
 """
 
 import math
 from dataclasses import replace
 
+import numpy as np
+
 from rsmpm_ti import load_scene, simulate
-from rsmpm_ti.analysis.load_curve import FilteredLoad
+from rsmpm_ti.analysis.load_curve import FilteredLoad, loading_curve
 from rsmpm_ti.cases.case import Case, Outcome, Row, relative
 from rsmpm_ti.records.history_table import nominal_stress
 from rsmpm_ti.rock.nonlocal_mean import Nonlocal
 from rsmpm_ti.rock.smeared_crack import Directional
 from rsmpm_ti.rock.softening import LinearSoftening
 from rsmpm_ti.spec.scene import Scene
+from rsmpm_ti.spec.seeding import Jittered
 from rsmpm_ti.verify.laboratory.strength_tests import ROCKS, strength
 
 PRESSURES = (0.0, 5e6, 10e6, 20e6, 40e6)
@@ -27,7 +33,7 @@ ENERGIES = LinearSoftening(G_f_I=60.0, G_f_II=2000.0)
 """Of a granite [J/m^2]: G_f_I of K_Ic = 1.9 MPa sqrt(m); G_f_II of shear under pressure, Wong (1982), J. Geophys. Res.
 87:990, table 3: 10^3 to 10^4."""
 
-BEYOND = 2.0
+BEYOND = 2.2
 """Strain at the end over that at the peak: a fault has then slipped by what its loss of strength takes."""
 
 
@@ -39,10 +45,12 @@ def specimen(pressure: float) -> Scene:
     E, nu = rock.elasticity.E, rock.elasticity.nu
     strain = BEYOND * (strength(rock, pressure) - pressure) * (1.0 - nu**2) / E
     scene = load_scene("intact", dx=DX, strain_end=strain, time_scale="auto")
-    return replace(scene, rock=rock, loading=replace(scene.loading, confinement=pressure))
+    bodies = tuple(replace(body, seeding=Jittered(amount=0.01)) for body in scene.bodies)
+    return replace(scene, rock=rock, bodies=bodies, loading=replace(scene.loading, confinement=pressure))
 
 
-def _rows(pressure: float) -> list[Row]:
+def _tested(pressure: float) -> tuple[list[Row], np.ndarray]:
+    """Rows, and the history."""
     scene = specimen(pressure)
     history = simulate(scene).history
     peak = FilteredLoad(scene).see_all(history).peak
@@ -54,13 +62,25 @@ def _rows(pressure: float) -> list[Row]:
     if pressure:
         why = "a fault within seven degrees of the weakest plane"
         rows.append(relative(f"residual, {name} [Pa]", friction * pressure, residual, 0.05, why))
-    return rows
+    return rows, history
 
 
 def residual(full: bool) -> Outcome:
     """Every pressure. quick: one."""
-    rows = [row for pressure in (PRESSURES if full else PRESSURES[3:4]) for row in _rows(pressure)]
-    return Outcome(tuple(rows), None)
+    pressures = PRESSURES if full else PRESSURES[3:4]
+    tested = [_tested(pressure) for pressure in pressures]
+
+    def draw(figure):
+        axes = figure.subplots()
+        for pressure, (rows, history) in zip(pressures, tested, strict=True):
+            _, stress, strain = loading_curve(history)
+            (line,) = axes.plot(100.0 * strain, 1e-6 * stress, label=f"p = {1e-6 * pressure:g} MPa", linewidth=0.9)
+            for row in rows:
+                axes.axhline(1e-6 * row.reference, color=line.get_color(), linestyle=":", linewidth=0.8)
+        axes.set(xlabel="axial strain [%]", ylabel="axial stress [MPa]", title="granite in a jacket; dotted: theory")
+        axes.legend()
+
+    return Outcome(tuple(row for rows, _ in tested for row in rows), draw)
 
 
 CASES = (Case("lab_residual", "peak and residual strength of cracking rock in a jacket, time_scale auto", residual),)
