@@ -1,4 +1,4 @@
-"""A double-notched strip pulled apart at three cell sizes: peak load and energy per crack area, by two laws."""
+"""Peak load of a double-notched strip and energy per crack area, in tension and in shear, at three cell sizes."""
 
 from dataclasses import dataclass, replace
 
@@ -25,6 +25,8 @@ SEAM_WIDTH, SEAM_STRENGTH = 10e-3, 0.7
 """Strip without notches [m], and strength of the seam in its middle, 4 cells high, over that of the rest."""
 
 SIZES = (1e-3, 0.5e-3, 0.25e-3)
+LENGTH = 2e-3
+"""Of the mean [m], the same rock at every size: two of the coarsest cells."""
 
 FALL = 0.5
 """A strip has broken when its stress is below this fraction of the largest so far: what comes after is waves."""
@@ -71,7 +73,7 @@ def curve(scene: Scene) -> dict:
 
 def pull_notched(*, dx: float, paper: bool) -> dict:
     """Two notches of 3 cells; with the lab's rock or with the paper's rule."""
-    rock = load_scene("cube_lab", dx=dx).rock
+    rock = load_scene("cube_lab", dx=dx, length=LENGTH).rock
     if paper:
         rock = replace(rock, after_failure=CompressionOnly(), nonlocal_mean=Local())
     half = 1.5 * dx
@@ -86,7 +88,7 @@ def pull_notched(*, dx: float, paper: bool) -> dict:
 
 def pull_seam(*, dx: float, jittered: bool) -> dict:
     """A strip with a weak seam, until it is in two. On a lattice its crack stays in one row of cells."""
-    rock = replace(load_scene("cube_lab", dx=dx).rock, heterogeneity=Seam(height=4.0 * dx))
+    rock = replace(load_scene("cube_lab", dx=dx, length=LENGTH).rock, heterogeneity=Seam(height=4.0 * dx))
     region = Box(lower=(0.0, 0.0), upper=(SEAM_WIDTH, HEIGHT))
     result = curve(strip(dx, SEAM_WIDTH, region, rock, 1e-3, Jittered(seed=1) if jittered else Lattice(), 5.0))
     return result | {"energy": np.array(rock.after_failure.softening.G_f_I)}
