@@ -13,7 +13,7 @@ from rsmpm_ti.errors import refuse
 from rsmpm_ti.units import Angle, Length
 
 MIN_CELLS = 2.0
-"""Shortest length of the mean [cells]: over one cell it is hardly a mean, and paths scatter by eight (docs/studies.md)."""
+"""Shortest length of the mean [cells]: over one it is hardly a mean, and paths scatter by eight (docs/studies.md)."""
 
 MAX_CELLS = 64
 """Longest length of the mean [cells]; every node then sums 450 others along each axis."""
