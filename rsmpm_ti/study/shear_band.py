@@ -127,7 +127,7 @@ def finish(results: dict) -> Outcome:
 
     def draw(figure):
         columns = max(len(angles) for angles in found.values())
-        figure.set_size_inches(max(1.6 * columns, 4.0), 3.3 * len(found))
+        figure.set_size_inches(max(1.4 * columns, 4.0), 2.6 * len(found))
         panels = np.atleast_1d(figure.subplots(len(found), columns, sharex=True, sharey=True, squeeze=False))
         for row, psi in zip(panels, found, strict=True):
             tags = [tag for tag in results if tag.startswith(f"psi{psi:g}_")]
