@@ -296,5 +296,5 @@ def test_taps_have_the_variance_that_is_left_to_them(shape, cells):
 )
 def test_rock_with_directional_cracks_and_mean_stress_survives_json(soft):
     law = Directional(residual_friction_angle=25.0, rotating=True, softening=soft)
-    one = scene(after_failure=law, nonlocal_mean=Nonlocal(length=1.5e-3, exclusion=3.0, wedge=20.0))
+    one = scene(after_failure=law, nonlocal_mean=Nonlocal(length=2.5e-3, exclusion=3.0, wedge=20.0))
     assert from_plain(json.loads(json.dumps(to_plain(one), allow_nan=False))) == one

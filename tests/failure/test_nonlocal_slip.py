@@ -5,7 +5,7 @@ import math
 import numpy as np
 import pytest
 import taichi as ti
-from nonlocal_block import DX, block, positions
+from nonlocal_block import DX, ROCK, block, positions
 
 from rsmpm_ti.failure.nonlocal_fields import read_crack_strains, sum_nonlocal
 from rsmpm_ti.failure.stress_update import check_failure
@@ -21,6 +21,13 @@ from rsmpm_ti.spec.scene import Body, Loading, Scene, Schedule
 from rsmpm_ti.spec.seeding import Lattice
 
 pytestmark = pytest.mark.usefixtures("taichi_f64")
+
+
+@pytest.fixture(autouse=True, scope="module")
+def blocks_of_this_start(taichi_f64):
+    """Blocks that another file's tests have made are gone with the Taichi that it started."""
+    block.cache_clear()
+
 
 CELLS = 32
 BAND = 2.0 * DX  # of the quadratic B-spline
@@ -91,13 +98,7 @@ def cell(softening) -> Simulation:
         title="cell",
         domain=Domain(lower=(0.0, 0.0), upper=(DX, DX), dx=DX),
         bodies=(Body(region=Box(lower=(0.0, 0.0), upper=(DX, DX))),),
-        rock=Rock(
-            density=2600.0,
-            elasticity=block(8).rock.elasticity,
-            criterion=block(8).rock.criterion,
-            after_failure=Directional(softening=softening),
-            nonlocal_mean=Nonlocal(length=LENGTH),
-        ),
+        rock=Rock(**ROCK | {"after_failure": Directional(softening=softening)}, nonlocal_mean=Nonlocal(length=LENGTH)),
         loading=Loading(),
         schedule=Schedule(t_end=1e-6),
     )
