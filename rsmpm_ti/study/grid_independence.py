@@ -95,14 +95,22 @@ def spread(paths: list[np.ndarray]) -> tuple[float, float]:
 def finish(results: dict) -> Outcome:
     families: dict[str, list[tuple[str, Wing]]] = {"lab": [], "paper": []}
     onset: dict[str, list[float]] = {"lab": [], "paper": []}
+    by_size: dict[str, list[float]] = {}
     for tag, result in results.items():
         family, dx, *_ = tag.split("_")
         families[family] += [(tag, read_wing(result, name, 1e-3 * float(dx))) for name in ENDS]
-        onset[family] += [float(result[f"onset_{name}"]) for name in ENDS]
+        loads = [float(result[f"onset_{name}"]) for name in ENDS]
+        onset[family] += loads
+        if family == "lab":
+            by_size.setdefault(dx, []).extend(loads)
     twice = "twice the length of the mean stress, 1 mm: it knows nothing finer"
     ends = "0.25 mm in the end's radius of 1.5 mm is 8 % of the root that stress there goes with"
     first = np.array([wing.first for _, wing in families["lab"]])
+    means = np.array([np.mean(loads) for loads in by_size.values()])
+    finer = "the end's radius is known to a part of a cell, and stress there goes with its root"
     rows = [
+        at_most("cube_lab: mean onset loads of the cell sizes, (max - min)/mean", np.ptp(means) / means.mean(), 0.03,
+                finer),
         at_most("cube_lab: angle of first cracks, largest distance from mean [deg]",
                 np.abs(first - first.mean()).max(), 8.0,
                 "half a particle of dx 1 mm, 0.25 mm, on the end's radius of 1.5 mm turns its normal by 9.5"),
