@@ -6,7 +6,7 @@ Soc. A 319:337.
 
 from rsmpm_ti import Angle, Jittered, Length, MPa, Pressure, Scene, Slit, lab_rock, mm, uniaxial_test
 
-QUICK = {"dx": 1.0 * mm}
+QUICK = {"dx": 1.0 * mm, "length": 2.0 * mm}  # a coarser rock: its mean is over two cells at least
 
 
 def scene(

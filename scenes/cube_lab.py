@@ -6,7 +6,7 @@ come from: `rsmpm_ti/rock/presets.py`.
 
 from rsmpm_ti import Angle, FractureEnergy, Jittered, Length, MPa, Output, Scene, Slit, lab_rock, mm, uniaxial_test
 
-QUICK = {"dx": 1.0 * mm}
+QUICK = {"dx": 1.0 * mm, "length": 2.0 * mm}  # a coarser rock: its mean is over two cells at least
 
 
 def scene(

@@ -2,7 +2,7 @@
 
 from rsmpm_ti import Angle, Jittered, Length, MPa, Output, Scene, Slit, brazilian_test, lab_rock, mm
 
-QUICK = {"dx": 1.0 * mm}
+QUICK = {"dx": 1.0 * mm, "length": 2.0 * mm}  # a coarser rock: its mean is over two cells at least
 
 
 def scene(
@@ -11,6 +11,7 @@ def scene(
     flaw_length: Length = 30.0 * mm,
     flaw_width: Length = 3.0 * mm,
     arc: Angle = 90.0,  # half-angle of the loaded arc [degrees]; 90: every node in touch with the platen row
+    length: Length = 1.0 * mm,
     dx: Length = 0.5 * mm,
     seed: int = 1,
     strain_end: float = 3.0e-4,
@@ -22,7 +23,7 @@ def scene(
         flaws = (Slit(centre=centre, length=flaw_length, width=flaw_width, angle=flaw_angle, rounded=True),)
     return brazilian_test(
         title=f"Brazilian disc {what}: directional cracks and fracture energy",
-        rock=lab_rock(),
+        rock=lab_rock(length=length),
         flaws=flaws,
         seeding=Jittered(seed=seed, fitted=True),
         arc=arc,

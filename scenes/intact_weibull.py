@@ -5,7 +5,8 @@ from dataclasses import replace
 
 from rsmpm_ti import Jittered, Length, Scene, Weibull, lab_rock, mm, uniaxial_test
 
-QUICK = {"dx": 1.0 * mm, "time_scale": 20.0}
+# a coarser rock: its mean is over two cells at least
+QUICK = {"dx": 1.0 * mm, "length": 2.0 * mm, "time_scale": 20.0}
 
 
 def scene(
@@ -13,6 +14,7 @@ def scene(
     weibull_modulus: float = 6.0,
     seed: int = 1,
     correlation_length: Length = 2.0 * mm,
+    length: Length = 1.0 * mm,
     dx: Length = 0.5 * mm,
     strain_end: float = 1.2e-3,
     time_scale: float | str = 10.0,
@@ -25,7 +27,7 @@ def scene(
     )
     return uniaxial_test(
         title="Uniaxial compression of a heterogeneous specimen",
-        rock=replace(lab_rock(), heterogeneity=strength),
+        rock=replace(lab_rock(length=length), heterogeneity=strength),
         seeding=Jittered(amount=0.1),
         room=15.0 * mm,
         dx=dx,

@@ -9,7 +9,7 @@ import math
 
 from rsmpm_ti import Angle, Jittered, Length, MPa, Output, Scene, Slit, lab_rock, mm, uniaxial_test
 
-QUICK = {"dx": 1.0 * mm}
+QUICK = {"dx": 1.0 * mm, "length": 2.0 * mm}  # a coarser rock: its mean is over two cells at least
 
 
 def scene(
@@ -19,6 +19,7 @@ def scene(
     ligament: Length = 12.0 * mm,
     flaw_length: Length = 12.0 * mm,
     flaw_width: Length = 3.0 * mm,
+    length: Length = 1.0 * mm,
     dx: Length = 0.5 * mm,
     seed: int = 1,
     strain_end: float = 9.0e-4,
@@ -36,7 +37,7 @@ def scene(
     )  # fmt: skip
     return uniaxial_test(
         title="Uniaxial compression of a specimen with two flaws",
-        rock=lab_rock(),
+        rock=lab_rock(length=length),
         flaws=flaws,
         seeding=Jittered(seed=seed, fitted=True),
         room=10.0 * mm,

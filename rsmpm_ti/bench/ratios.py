@@ -77,7 +77,7 @@ def lab_rock(dx: float, threads: int, rounds: int) -> str:
     from rsmpm_ti.solver.advance import Drive
 
     real, _ = start_taichi("f64", "cpu", threads)
-    scene = load_scene("cube_lab", dx=dx)
+    scene = load_scene("cube_lab", dx=dx, length=max(1e-3, 2.0 * dx))
     papers = replace(scene, rock=replace(scene.rock, after_failure=CompressionOnly(), nonlocal_mean=Local()))
     drives = {"the paper's rule": Drive(papers, scene.particles(), real)}
     drives |= {name: Drive(scene, scene.particles(), real) for name in ("cube_lab, whole", "cube_lab, at its peak")}

@@ -1,4 +1,4 @@
-"""Mean stress and mean crack strain over a length of the rock: spread to nodes, blurred along each axis, read back.
+"""Mean stress, crack strain and slip over a length of the rock: spread to nodes, blurred along each axis, read back.
 
 2D. A look for cracks needs them only near what is cracked or has tension of its own beyond the strength, since a mean
 is no larger than the largest that it is taken over; the grid is averaged there, tile by tile, with the same sums.
@@ -63,7 +63,7 @@ def needed_tiles(sim: ti.template(), limit: float) -> ti.i32:
 
 @ti.kernel
 def clear_nonlocal_sums(sim: ti.template()):
-    zero = ti.Vector.zero(float, 6)
+    zero = ti.Vector.zero(float, 7)
     for i in ti.grouped(sim.nonlocal_sums.sums):
         if needed(sim, i) > 0:
             sim.nonlocal_sums.sums[i] = zero
@@ -74,7 +74,7 @@ def clear_nonlocal_sums(sim: ti.template()):
 
 @ti.func
 def add_stress(sim: ti.template(), start, stop, slot, what: ti.template(), dt, time):
-    """sum w_ip V_p sigma_p, sum w_ip V_p and sum w_ip V_p e_p to nodes; e: largest opening strain across the crack."""
+    """sum w_ip V_p (sigma_p, 1, e_p, slip_p) to nodes; e: largest opening strain across the crack."""
     particles = sim.particles
     for p in range(start, stop):
         xi = coordinates(sim, p, sim.grid.frame())
@@ -83,8 +83,8 @@ def add_stress(sim: ti.template(), start, stop, slot, what: ti.template(), dt, t
             continue
         w, dw = weights_at(sim, xi, base)
         sigma, V_p = particles.sigma[p], particles.volume[p] * sim.rock.after_failure.carrying_ratio(sim, p)
-        strain = particles.history.crack_strain_max[p][0]
-        carried = V_p * ti.Vector([sigma[0], sigma[1], sigma[2], sigma[3], 1.0, strain])
+        strain, slip = particles.history.crack_strain_max[p][0], particles.history.slip[p]
+        carried = V_p * ti.Vector([sigma[0], sigma[1], sigma[2], sigma[3], 1.0, strain, slip])
         for offset in ti.static(sim.stencil):
             i = base + ti.Vector(offset)
             sim.traversal.add(sim.nonlocal_sums.sums, i, tensor_weight(w, offset) * carried)
@@ -102,7 +102,7 @@ def blur(sim: ti.template(), source: ti.template(), target: ti.template(), axis:
     for i in ti.grouped(source):
         if needed(sim, i) < least:
             continue
-        total = ti.Vector.zero(float, 6)
+        total = ti.Vector.zero(float, 7)
         for k in range(-reach, reach + 1):
             j = i + k * ti.Vector.unit(2, axis)
             if j[axis] >= 0 and j[axis] < sim.grid.nodes[axis]:
@@ -116,42 +116,59 @@ def mean_stress(sim: ti.template(), p):
     xi = coordinates(sim, p, sim.grid.frame())
     base = sim.grid.base(xi, sim.shape)
     w, dw = weights_at(sim, xi, base)
-    total = ti.Vector.zero(float, 6)
+    total = ti.Vector.zero(float, 7)
     for offset in ti.static(sim.stencil):
         total += tensor_weight(w, offset) * sim.nonlocal_sums.sums[base + ti.Vector(offset)]
     return ti.Vector([total[0], total[1], total[2], total[3]]) / total[4]
 
 
+@ti.func
+def strain_of_band(sim: ti.template(), mean, slope):
+    """(strain of a crack band at a place where the mean of it and its slope across are these, how much it is in it).
+
+    Bazant & Lin (1988), J. Struct. Eng. 114:2493. What the mean makes of a band is highest in its middle and falls off
+    as a Gaussian; the slope across tells how far away the middle is, so that all rows of a band lose strength together.
+    Beyond half the band's width that fades, and beyond the whole of it there is none: the mean of a crack that gapes
+    reaches far, but what cracks there is no part of it.
+    """
+    means = sim.nonlocal_sums
+    away = slope * means.variance / ti.max(mean, 1e-30)
+    part = ti.max(0.0, ti.min(1.0, 2.0 - 2.0 * away / sim.band))
+    away = ti.min(away, 0.5 * sim.band)
+    return ti.exp(0.5 * away * away / means.variance) * mean / means.band_fraction, part
+
+
 @ti.kernel
 def read_crack_strains(sim: ti.template()):
-    """Crack strain of each cracked particle if its band had the opening of the rock around: Bazant & Lin (1988).
+    """Crack strain and slip of each cracked particle if its band had the opening and the slip of the rock around.
 
-    J. Struct. Eng. 114:2493. What the mean makes of a band is highest in its middle and falls off as a Gaussian; the
-    slope across the crack tells how far away the middle is, so that all rows of a band lose strength together. Beyond
-    half the band's width that fades, and beyond the whole of it there is none: the mean of a crack that gapes reaches
-    far, but what cracks there is no part of it.
+    A crack opens along its normal. Of a slip its plane is not known, but it varies across it only: its slope is taken
+    whole, and where that says that a particle is in no band, at a shear crack's end or in a crowd, its own slip counts.
     """
-    particles, means = sim.particles, sim.nonlocal_sums
+    particles = sim.particles
     for p in particles.mode:
         if particles.mode[p] != 0:
             xi = coordinates(sim, p, sim.grid.frame())
             base = sim.grid.base(xi, sim.shape)
             w, slopes = weights_at(sim, xi, base)
             dw = per_metre(sim, slopes, sim.grid.frame())
-            volume, strain, gradient = 0.0, 0.0, ti.Vector.zero(float, 2)
+            volume, opened, slipped = 0.0, 0.0, 0.0
+            opened_slope, slipped_slope = ti.Vector.zero(float, 2), ti.Vector.zero(float, 2)
             for offset in ti.static(sim.stencil):
-                total = means.sums[base + ti.Vector(offset)]
-                volume += tensor_weight(w, offset) * total[4]
-                strain += tensor_weight(w, offset) * total[5]
+                weighted = tensor_weight(w, offset) * sim.nonlocal_sums.sums[base + ti.Vector(offset)]
+                volume += weighted[4]
+                opened += weighted[5]
+                slipped += weighted[6]
+            opened, slipped = opened / volume, slipped / volume
             for offset in ti.static(sim.stencil):
-                total = means.sums[base + ti.Vector(offset)]
-                slope = tensor_gradient(w, dw, offset)
-                gradient += (total[5] - strain / volume * total[4]) * slope
-            away = ti.abs(gradient.dot(particles.history.crack_normal[p])) * means.variance / ti.max(strain, 1e-30)
-            part = ti.max(0.0, ti.min(1.0, 2.0 - 2.0 * away / sim.band))
-            away = ti.min(away, 0.5 * sim.band)
-            middle = ti.exp(0.5 * away * away / means.variance) * strain / volume
-            particles.crack_strain_nonlocal[p] = part * middle / means.band_fraction
+                total = sim.nonlocal_sums.sums[base + ti.Vector(offset)]
+                slope = tensor_gradient(w, dw, offset) / volume
+                opened_slope += (total[5] - opened * total[4]) * slope
+                slipped_slope += (total[6] - slipped * total[4]) * slope
+            strain, part = strain_of_band(sim, opened, ti.abs(opened_slope.dot(particles.history.crack_normal[p])))
+            slip, within = strain_of_band(sim, slipped, slipped_slope.norm())
+            particles.crack_strain_nonlocal[p] = part * strain
+            particles.slip_nonlocal[p] = within * slip + (1.0 - within) * particles.history.slip[p]
 
 
 @ti.kernel

@@ -1,4 +1,4 @@
-"""Node fields by which stress and crack strain are averaged over a length of the rock."""
+"""Node fields by which stress, crack strain and slip are averaged over a length of the rock."""
 
 import math
 
@@ -17,14 +17,14 @@ MAX_NEW_CRACKS = 4096
 
 @ti.data_oriented
 class NonlocalSums:
-    """Node fields of averages: sums of V sigma, V and V x crack strain, a second copy for blurring, and the largest
-    overload."""
+    """Node fields of averages: sums of V sigma, V, V x crack strain and V x slip, a second copy for blurring, and
+    the largest overload."""
 
     def __init__(self, scene: Scene, grid: Grid, real):
         filter_weights = scene.rock.nonlocal_mean.filter_weights(scene.domain.dx, scene.shape.variance)
         self.reach, self.filter_weights = len(filter_weights) // 2, ti.field(real, len(filter_weights))
         self.filter_weights.from_numpy(np.array(filter_weights))
-        self.sums, self.other = (ti.Vector.field(6, real, grid.nodes) for _ in range(2))
+        self.sums, self.other = (ti.Vector.field(7, real, grid.nodes) for _ in range(2))
         self.peak, self.overloaded, self.any_overloaded = (
             ti.field(real, grid.nodes),
             ti.field(ti.i32, grid.nodes),

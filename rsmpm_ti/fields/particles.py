@@ -53,6 +53,7 @@ def stored(scene: Scene) -> tuple[Stored, ...]:
     if rock.criterion.breaks and rock.nonlocal_mean.acts:
         found += [Stored("excluding_normal", dim)]
         found += [Stored("crack_strain_nonlocal", 1), Stored("crack_strain_max_nonlocal", 1)]
+        found += [Stored("slip_nonlocal", 1), Stored("slip_max_nonlocal", 1)]
     found += [Stored("id", 1, True), *[Stored("mode", 1, True)] * rock.criterion.breaks]
     return (*found, *(entry for entry in of_law if entry.whole))
 
@@ -102,7 +103,10 @@ class Particles:
             self.overload, self.excluding_normal = ti.field(real, count), vector(dim)
             # crack strain of the rock around, by which tensile strength is lost: as last averaged, and the largest
             self.crack_strain_nonlocal, self.crack_strain_max_nonlocal = ti.field(real, count), ti.field(real, count)
+            # the same of slip, by which cohesion is lost
+            self.slip_nonlocal, self.slip_max_nonlocal = ti.field(real, count), ti.field(real, count)
             real_fields += [self.excluding_normal, self.crack_strain_nonlocal, self.crack_strain_max_nonlocal]
+            real_fields += [self.slip_nonlocal, self.slip_max_nonlocal]
         # what is 0 in a particle at rest without stress, and what a particle that can break has besides
         resting = [self.v, self.sigma, *([self.C] if self.affine else []), *([self.q] if self.viscous else [])]
         self.resting_components = (*(c for field in resting for c in components(field)), *self.history.components)

@@ -12,6 +12,9 @@ from rsmpm_ti.checks import Positive, checked
 from rsmpm_ti.errors import refuse
 from rsmpm_ti.units import Angle, Length
 
+MIN_CELLS = 2.0
+"""Shortest length of the mean [cells]: over one it is hardly a mean, and paths scatter by eight (docs/studies.md)."""
+
 MAX_CELLS = 64
 """Longest length of the mean [cells]; every node then sums 450 others along each axis."""
 
@@ -39,6 +42,10 @@ class Local:
         """A crack begins in the particle, marked by a crack strain."""
 
     @ti.func
+    def begin_slip(self, sim: ti.template(), p, strain):
+        """Slip begins in the particle, marked by a strain."""
+
+    @ti.func
     def follow(self, sim: ti.template(), p):
         """Before the response of a cracked particle in a step."""
 
@@ -46,6 +53,11 @@ class Local:
     def softening_strain(self, sim: ti.template(), p):
         """Crack strain by which a particle's crack has lost tensile strength."""
         return sim.particles.history.crack_strain_max[p][0]
+
+    @ti.func
+    def softening_slip(self, sim: ti.template(), p):
+        """Slip by which a particle has lost cohesion."""
+        return sim.particles.history.slip[p]
 
 
 @ti.data_oriented
@@ -62,9 +74,10 @@ class Nonlocal:
     crack relieves. Local tracking with an exclusion radius, Cervera & Chiumenti (2006), Comput. Methods Appl. Mech.
     Eng. 196:304, sec. 4.
 
-    A cracked particle loses tensile strength by the opening of the crack that it is part of, read from the mean crack
-    strain over the same length, not by its own fraction of it: then a crack costs G_f per area however many rows of
-    particles it runs through. Bazant & Lin (1988), J. Struct. Eng. 114:2493. So `length` must be short against the zone
+    A cracked particle loses tensile strength by the opening of the crack that it is part of, and cohesion by the slip
+    of the band that it is part of, read from the mean crack strain and the mean slip over the same length, not by its
+    own fraction of them: then a crack costs G_f per area however many rows of particles it runs through. Bazant & Lin
+    (1988), J. Struct. Eng. 114:2493. So `length` must be short against the zone
     in which strength is lost, about E G_f/sigma_t^2; where it is not, a crack's tip is robbed of strength by the crack
     behind it.
     """
@@ -94,15 +107,25 @@ class Nonlocal:
         sim.particles.crack_strain_max_nonlocal[p] = strain
 
     @ti.func
+    def begin_slip(self, sim: ti.template(), p, strain):
+        sim.particles.slip_max_nonlocal[p] = ti.max(sim.particles.slip_max_nonlocal[p], strain)
+
+    @ti.func
     def follow(self, sim: ti.template(), p):
         particles = sim.particles
         largest = ti.max(particles.crack_strain_max_nonlocal[p], particles.crack_strain_nonlocal[p])
         particles.crack_strain_max_nonlocal[p] = largest
+        particles.slip_max_nonlocal[p] = ti.max(particles.slip_max_nonlocal[p], particles.slip_nonlocal[p])
 
     @ti.func
     def softening_strain(self, sim: ti.template(), p):
         """That of the rock around."""
         return sim.particles.crack_strain_max_nonlocal[p]
+
+    @ti.func
+    def softening_slip(self, sim: ti.template(), p):
+        """That of the rock around."""
+        return sim.particles.slip_max_nonlocal[p]
 
     @property
     def radius(self) -> float:
@@ -117,9 +140,7 @@ class Nonlocal:
     def filter_weights(self, dx: float, variance: float) -> tuple[float, ...]:
         """Weights of a row of nodes, symmetric about the middle one, whose variance with that of spreading to nodes
         and reading back, `variance` cells^2 each, is length^2."""
-        spare = (self.length / dx) ** 2 - 2.0 * variance
-        if spare < 0.36:  # a sampled Gaussian this narrow has another variance than it should; three points have it
-            return (0.5 * spare, 1.0 - spare, 0.5 * spare)
+        spare = (self.length / dx) ** 2 - 2.0 * variance  # 3.5 at least: wide enough for a Gaussian to be sampled
         reach = math.ceil(3.5 * math.sqrt(spare))
         weight = np.exp(-0.5 * np.arange(-reach, reach + 1) ** 2 / spare)
         return tuple((weight / weight.sum()).tolist())
@@ -132,16 +153,13 @@ class Nonlocal:
         """Variance of such a band after the mean is taken [m^2]."""
         return self.length**2 + width**2 / 12.0
 
-    def check(self, dx: float, variance: float) -> None:
+    def check(self, dx: float) -> None:
         """Raise SceneError where cells of size dx [m] are too large or too small for this length."""
-        least = self.least_length(dx, variance)
-        if not self.length >= least:
-            remedy = f"use dx of at most {self.length / least * dx:.4g} m"
-            raise refuse("rock.nonlocal_mean.length", self.length, f"at least {least:.4g} m here", remedy)
+        least = MIN_CELLS * dx
+        if not self.length >= least * (1.0 - 1e-9):
+            allowed = f"at least {least:.4g} m, two cells, or what cracks and where follows the grid"
+            remedy = f"use dx of at most {self.length / MIN_CELLS:.4g} m, or a longer length where that is the rock's"
+            raise refuse("rock.nonlocal_mean.length", self.length, allowed, remedy)
         if not self.length <= MAX_CELLS * dx:
             remedy = f"use dx of at least {self.length / MAX_CELLS:.4g} m"
             raise refuse("rock.nonlocal_mean.length", self.length, f"at most {MAX_CELLS} cells", remedy)
-
-    def least_length(self, dx: float, variance: float) -> float:
-        """The shortest length that this grid can average over [m]."""
-        return math.sqrt(2.0 * variance) * dx

@@ -144,6 +144,7 @@ class Directional(AfterFailure):
             sim.rock.nonlocal_mean.begin_crack(sim, p, MIN_CRACK_STRAIN)
         else:
             h.slip[p] = ti.max(h.slip[p], MIN_CRACK_STRAIN)
+            sim.rock.nonlocal_mean.begin_slip(sim, p, MIN_CRACK_STRAIN)
         return 0.0
 
     @ti.func

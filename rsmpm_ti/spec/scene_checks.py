@@ -213,6 +213,6 @@ def check_cracks(rock, shape, dim: int, dx: float) -> None:
         if not law.oriented:
             remedy = "use Local() or after_failure = Directional(...)"
             raise refuse("rock.nonlocal_mean", rock.nonlocal_mean, "Local with the paper's laws after failure", remedy)
-        rock.nonlocal_mean.check(dx, shape.variance)
+        rock.nonlocal_mean.check(dx)
     if rock.criterion.breaks:
         law.check(rock, shape, dx)

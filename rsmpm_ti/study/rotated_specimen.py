@@ -68,9 +68,14 @@ class EndTraction:
         return push
 
 
-def turned_scene(*, angle: float, dx: float, seed: int, paper: bool, end: float, time_scale: float) -> Scene:
-    """`cube_lab` turned by `angle` [degrees], loaded up to `end` [Pa]; `paper`: with the paper's rule on a lattice."""
-    lab = load_scene("cube_lab", dx=dx)
+def turned_scene(
+    *, angle: float, dx: float, length: float, seed: int, paper: bool, end: float, time_scale: float
+) -> Scene:
+    """`cube_lab` turned by `angle` [degrees], loaded up to `end` [Pa]; `paper`: with the paper's rule on a lattice.
+
+    length: of the mean stress [m].
+    """
+    lab = load_scene("cube_lab", dx=dx, length=length)
     rock = lab.rock
     centre = (0.5 * SIDE, 0.5 * SIDE)
     (flaw,) = lab.bodies[0].region.removed
@@ -92,7 +97,7 @@ def turned_scene(*, angle: float, dx: float, seed: int, paper: bool, end: float,
     )
 
 
-def grow(*, angle: float, dx: float, seed: int, paper: bool, end: float, time_scale: float) -> dict:
+def grow(*, angle: float, dx: float, length: float, seed: int, paper: bool, end: float, time_scale: float) -> dict:
     """Load until both wings are GROWN long, or up to `end` [Pa].
 
     Of each wing, all turned back: `failed`, positions [n, 2] of what failed in tension, in order of time [m]; `first`,
@@ -102,7 +107,7 @@ def grow(*, angle: float, dx: float, seed: int, paper: bool, end: float, time_sc
     loads in Pa, known to a part in LOOKS of the whole.
     """
     real = ti.lang.impl.get_runtime().default_fp
-    scene = turned_scene(angle=angle, dx=dx, seed=seed, paper=paper, end=end, time_scale=time_scale)
+    scene = turned_scene(angle=angle, dx=dx, length=length, seed=seed, paper=paper, end=end, time_scale=time_scale)
     drive = Drive(scene, scene.particles(), real)
     traction = scene.loading.force_field
     (flaw,) = scene.bodies[0].region.removed

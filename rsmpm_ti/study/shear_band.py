@@ -1,6 +1,6 @@
-"""Shear bands through intact rock in compression: their angle, held against Mohr and Coulomb's."""
+"""Shear bands through intact rock in compression: their angle against what dilation makes of it."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -9,20 +9,34 @@ from rsmpm_ti.cases.case import Outcome, Row, at_most, difference
 from rsmpm_ti.records.snapshot import SHEAR
 from rsmpm_ti.study.runs import Run, Study
 
-SEEDS = tuple(range(1, 9))
+SEEDS, DILATION = tuple(range(1, 9)), (0.0, 10.0, 20.0)
+"""Of strength and places; angles of dilation psi [degrees]."""
+
 WIDTH = 4e-3
 """Width of the strip in which a band is looked for [m]: bands are 3 to 4 mm wide at dx = 1 mm, not quite straight."""
 
 STEP = 0.5
 """Angles are tried at this distance [degrees]."""
 
-ARTHUR, COULOMB = 55.0, 65.0
-"""45 + (phi + psi)/4 and 45 + phi/2 [degrees] with phi = 40, from the plane on which the major principal stress acts.
+FRICTION, COULOMB = 40.0, 65.0
+"""phi of the rock, and Coulomb's (1776) angle 45 + phi/2 of a band from the plane on which the major principal stress
+acts [degrees]."""
 
-Arthur et al. (1977), Geotechnique 27:53; Coulomb (1776). This rock slips at constant volume, psi = 0, for which Roscoe
-(1970), Geotechnique 20:129, has 45 + psi/2 = 45. What lies between Roscoe and Coulomb is admissible; Arthur's is what
-is mostly measured.
-"""
+CLOSE = 3.0
+"""How near the mean of the seeds is to be to Arthur's angle [degrees]."""
+
+
+def arthur(psi: float) -> float:
+    """45 + (phi + psi)/4 [degrees], which is mostly measured: Arthur et al. (1977), Geotechnique 27:53.
+
+    What lies between Roscoe's angle and Coulomb's is admissible.
+    """
+    return 45.0 + 0.25 * (FRICTION + psi)
+
+
+def roscoe(psi: float) -> float:
+    """45 + psi/2 [degrees]: flow leaves lengths along such a band as they are. Roscoe (1970), Geotechnique 20:129."""
+    return 45.0 + 0.5 * psi
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -62,9 +76,14 @@ def bands(x: np.ndarray) -> list[Strip]:
     return sorted(pair, key=lambda strip: -int(strip.inside.sum()))
 
 
-def crush(*, dx: float, seed: int) -> dict:
-    """`intact_weibull` to its end: places where particles lost half their cohesion, and peak stress over UCS."""
-    scene = load_scene("intact_weibull", dx=dx, seed=seed, time_scale=20.0)
+def crush(*, seed: int, psi: float) -> dict:
+    """`intact_weibull --quick` to its end: places where particles lost half their cohesion, and peak stress over UCS.
+
+    psi: angle of dilation [degrees].
+    """
+    scene = load_scene("intact_weibull", quick=True, seed=seed)
+    law = replace(scene.rock.after_failure, dilation_angle=psi)
+    scene = replace(scene, rock=replace(scene.rock, after_failure=law))
     result = simulate(scene, threads=1)
     ucs = scene.rock.criterion.ucs
     return {
@@ -74,41 +93,61 @@ def crush(*, dx: float, seed: int) -> dict:
 
 
 def runs(quick: bool) -> list[Run]:
+    """Every seed at every dilation; quick: one seed."""
     seeds = SEEDS[:1] if quick else SEEDS
-    return [Run(f"seed_{seed}", crush, {"dx": 1e-3, "seed": seed}) for seed in seeds]
+    return [Run(f"psi{psi:g}_seed{seed}", crush, {"seed": seed, "psi": psi}) for psi in DILATION for seed in seeds]
+
+
+def steepness(x: np.ndarray) -> float:
+    """Angle of the fullest band of places x from the horizontal [degrees]."""
+    angle = bands(x)[0].angle
+    return min(angle, 180.0 - angle)
 
 
 def finish(results: dict) -> Outcome:
     rows: list[Row] = []
-    steepness = []
+    found: dict[float, list[float]] = {}
     for tag, result in results.items():
-        strip = bands(result["x"])[0]
-        steep = min(strip.angle, 180.0 - strip.angle)
-        steepness.append(steep)
+        psi = float(tag.split("_")[0].removeprefix("psi"))
+        steep = steepness(result["x"])
+        found.setdefault(psi, []).append(steep)
+        middle, half = 0.5 * (COULOMB + roscoe(psi)), 0.5 * (COULOMB - roscoe(psi))
         what = f"{tag}: angle of the fullest band from the horizontal [degrees]"
-        rows.append(difference(what, ARTHUR, steep, COULOMB - ARTHUR, "between Roscoe's 45 and Coulomb's 65"))
+        rows.append(
+            difference(what, middle, steep, half, f"between Roscoe's {roscoe(psi):g} and Coulomb's {COULOMB:g}")
+        )
         why = "rock with weak places is weaker than without"
         rows.append(at_most(f"{tag}: peak stress over UCS of the uniform rock", float(result["peak"]), 1.0, why))
-
-    if len(steepness) > 1:
-        error, why = np.std(steepness, ddof=1) / np.sqrt(len(steepness)), "twice the standard error of the mean"
-        rows.append(difference("mean angle [degrees]", ARTHUR, float(np.mean(steepness)), 2.0 * float(error), why))
+    for psi, angles in found.items():
+        if len(angles) > 1:
+            error = np.std(angles, ddof=1) / np.sqrt(len(angles))
+            what = f"dilation {psi:g} degrees: mean angle of {len(angles)} bands [degrees]"
+            why = f"near Arthur's; standard error of the mean {error:.1f}"
+            rows.append(difference(what, arthur(psi), float(np.mean(angles)), CLOSE, why))
 
     def draw(figure):
-        figure.set_size_inches(9.0, 3.6 * -(-len(results) // 4))
-        axes = np.atleast_1d(figure.subplots(-(-len(results) // 4), min(4, len(results)), sharey=True)).ravel()
-        for ax, (tag, result) in zip(axes, results.items(), strict=False):
-            x = result["x"]
-            ax.plot(*(1e3 * x.T), ".", color="0.7", markersize=1.0)
-            for strip, colour in zip(bands(x), ("C0", "C1"), strict=True):
-                steep = min(strip.angle, 180.0 - strip.angle)
-                ax.plot(*(1e3 * x[strip.inside].T), ".", color=colour, markersize=1.0, label=f"{steep:.1f} degrees")
-            ax.set(aspect="equal", xlabel="x [mm]", title=tag, xlim=(-15, 65), ylim=(0, 100))
-            ax.legend(fontsize=7)
-        for ax in axes[::4]:
-            ax.set_ylabel("y [mm]")
+        columns = max(len(angles) for angles in found.values())
+        figure.set_size_inches(max(1.4 * columns, 4.0), 2.6 * len(found))
+        panels = np.atleast_1d(figure.subplots(len(found), columns, sharex=True, sharey=True, squeeze=False))
+        for row, psi in zip(panels, found, strict=True):
+            tags = [tag for tag in results if tag.startswith(f"psi{psi:g}_")]
+            row[0].set_ylabel(f"dilation {psi:g} degrees\ny [mm]")
+            for ax, tag in zip(row, tags, strict=False):
+                x = results[tag]["x"]
+                ax.plot(*(1e3 * x.T), ".", color="0.7", markersize=0.6)
+                first, second = bands(x)
+                for strip, colour in ((second, "C1"), (first, "C0")):
+                    ax.plot(*(1e3 * x[strip.inside].T), ".", color=colour, markersize=0.6)
+                ax.set_title(f"{tag.split('_')[1]}: {steepness(x):.1f}", fontsize=8)
+                ax.set(aspect="equal", xlim=(-10, 60), ylim=(0, 100))
+        for ax in panels[-1]:
+            ax.set_xlabel("x [mm]")
 
     return Outcome(tuple(rows), draw)
 
 
-STUDIES = (Study("shear_band", "angle of shear bands through intact heterogeneous rock, eight seeds", runs, finish),)
+STUDIES = (
+    Study(
+        "shear_band", "angle of shear bands through uneven rock at three angles of dilation, eight seeds", runs, finish
+    ),
+)

@@ -68,24 +68,22 @@ def reading(d: np.ndarray, width: float, length: float) -> np.ndarray:
     return part * mean * np.exp(0.5 * away**2 / variance) * BAND / (2.0 * norm.cdf(0.5 * BAND / length) - 1.0)
 
 
-@pytest.mark.parametrize("ratio", [1.0, 2.0])
+@pytest.mark.parametrize("ratio", [2.0, 3.0])
 @pytest.mark.parametrize("angle, rows", [(0.0, 1.0), (27.0, 1.0), (45.0, 1.0), (0.0, 0.5)])
 def test_rows_of_a_crack_lose_strength_by_the_opening_that_they_share(ratio, angle, rows):
     """A band of the assumed width, turned, and one half as wide: nearly all rows read the opening W.
 
-    Sixteen particles in a cell: with four, a turned band holds a few per cent more rock here than there. At a length of
-    one cell the mean of the narrow band is not quite Gaussian: 7 %.
+    Sixteen particles in a cell: with four, a turned band holds a few per cent more rock here than there.
     """
     sim = block(CELLS, length=ratio * DX, seeding=Lattice(particles_per_axis=4))
     strain, away = opened(sim, angle, 0.5 * rows * BAND)
     expected = reading(away, rows * BAND, ratio * DX)
     read = strain * BAND / W
     assert len(read) > 50
-    assert np.abs(read - expected).mean() < (0.03 if rows == 1.0 or ratio == 2.0 else 0.07)
+    assert np.abs(read - expected).mean() < 0.03
     near = away < 0.5 * BAND
-    if rows == 1.0 or ratio == 2.0:
-        assert (read[away > 1.2 * BAND] == 0.0).all()
-        assert read[near].mean() == pytest.approx(1.0, abs=0.04) and read[near].std() < 0.04
+    assert (read[away > 1.2 * BAND] == 0.0).all()
+    assert read[near].mean() == pytest.approx(1.0, abs=0.04) and read[near].std() < 0.04
 
 
 def test_crack_that_ends_at_a_free_face_opens_there_as_inside():
@@ -100,8 +98,8 @@ def test_crack_that_ends_at_a_free_face_opens_there_as_inside():
 
 
 def test_lonely_cracked_particle_keeps_nearly_all_of_its_strength():
-    """A particle that opens alone is no crack: over one cell it counts as a small fraction of its strain."""
-    sim = block(CELLS, length=DX)
+    """A particle that opens alone is no crack: over two cells it counts as a small fraction of its strain."""
+    sim = block(CELLS, length=2.0 * DX)
     middle = int(np.linalg.norm(positions(sim) - 0.5 * CELLS * DX, axis=1).argmin())
     particles = sim.particles
     mode, widest = np.zeros(particles.count, dtype=np.int32), np.zeros((particles.count, 2))
@@ -111,5 +109,5 @@ def test_lonely_cracked_particle_keeps_nearly_all_of_its_strength():
     sum_nonlocal(sim)
     read_crack_strains(sim)
     # V/(2 pi l^2) of its strain in a mean, over what is left of a band in its middle
-    fraction = 0.25 / (2.0 * math.pi) / Nonlocal(length=DX).band_fraction(BAND)
+    fraction = 0.25 / (2.0 * math.pi * 4.0) / Nonlocal(length=2.0 * DX).band_fraction(BAND)
     assert particles.crack_strain_nonlocal.to_numpy()[middle] * BAND / W == pytest.approx(fraction, rel=0.1)

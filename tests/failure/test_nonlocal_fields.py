@@ -54,7 +54,7 @@ def test_uniform_stress_is_its_own_mean_at_faces_flaws_and_walls():
     np.testing.assert_allclose(mean, np.broadcast_to(stress, mean.shape), rtol=1e-12)
 
 
-CASES = [(shape, ratio) for shape in (Linear(), Gimp(), QuadraticBSpline()) for ratio in (0.8, 2.0)]
+CASES = [(shape, ratio) for shape in (Linear(), Gimp(), QuadraticBSpline()) for ratio in (2.0, 2.5)]
 waves = pytest.mark.parametrize("shape, ratio", CASES, ids=lambda v: name_of(v))
 CELLS = 32
 
@@ -73,7 +73,7 @@ def test_linear_field_is_its_own_mean_inside(shape, ratio):
     sigma = np.stack([1.0 + 2e3 * x[:, 0], 3e3 * x[:, 1], 1e3 * (x[:, 0] - x[:, 1]), np.ones(len(x))], axis=1)
     mean, _ = averaged(sim, sigma)
     deep = inside(x, ratio * DX)
-    assert deep.sum() > 300
+    assert deep.sum() > 250
     np.testing.assert_allclose(mean[deep], sigma[deep], rtol=0.0, atol=1e-9)  # round-off of values up to 100
 
 
@@ -104,9 +104,7 @@ def test_length_is_the_standard_deviation_of_the_gaussian_whatever_the_cell_and_
     # cut off at 3.5 deviations a Gaussian has lost 0.6 % of its variance: 0.2 % at k l = 0.8, 0.5 % at 1.3
     assert found[:3] == pytest.approx(expected[:3], rel=0.01)
     assert np.ptp(found[:3]) < 0.01 * found[0]
-    # at 3.9 cells per wave three taps and the functions differ from a Gaussian of their variance: (k dx)^4/24 = 0.29
-    # times the sum of fourth cumulants, 0.05 cells^4 or less
-    assert found[3] == pytest.approx(expected[3], rel=0.01 if ratio == 2.0 else 0.02)
+    assert found[3] == pytest.approx(expected[3], rel=0.01)
 
 
 def mean_by_matrices(sim: Simulation, sigma: np.ndarray) -> np.ndarray:

@@ -17,7 +17,7 @@ SCENES = {
     "paper": load_scene("cube", **COARSE),
     "affine, usf": replace(load_scene("cube", **COARSE), transfer=Apic(), order="usf"),
     "lab": load_scene("cube_lab", dx=2.5e-3, flaw_width=7.5e-3, length=5e-3),
-    "uneven": load_scene("intact_weibull", dx=1e-3),
+    "uneven": load_scene("intact_weibull", dx=1e-3, length=2e-3),
 }
 
 

@@ -244,7 +244,7 @@ def test_specimen_first_fails_at_its_weakest_particle():
     """Stress is uniform until then: UCS of the rock times the smallest factor, at that particle's place."""
     # the paper's rule, by which a particle fails when its own stress reaches its strength
     settings = {"rock.nonlocal_mean": "Local", "rock.after_failure": "CompressionOnly", "domain.dx": "0.0025"}
-    scene = load_scene("intact_weibull", dx=1.0 * MM, time_scale=40.0, strain_end=3.8e-4, settings=settings)
+    scene = load_scene("intact_weibull", quick=True, time_scale=40.0, strain_end=3.8e-4, settings=settings)
     # on a lattice: the scene's jitter makes stress noise of 2 %
     scene = replace(scene, shape=Linear(), bodies=(replace(scene.bodies[0], seeding=Lattice()),))
     x, k = scene.particles()[0].x, strengths_by_seed(scene)

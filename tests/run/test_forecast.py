@@ -20,7 +20,7 @@ BLOCK = Path(__file__).resolve().parents[1] / "block_3d.py"
 RUNS = {
     "paper": ("cube", {"dx": 1e-3, "flaw_width": 3e-3, "time_scale": 16.0}, 60),
     "elastic": ("intact", {"dx": 0.5e-3, "rock.criterion": "Unbreakable"}, 30),
-    "directional": ("cube_lab", {"dx": 1e-3}, 60),
+    "directional": ("cube_lab", {"dx": 1e-3, "length": 2e-3}, 60),
     "hat": ("cube", {"dx": 0.5e-3, "flaw_width": 1.5e-3, "shape": "Linear"}, 30),
     "3d": (str(BLOCK), {}, 10),
 }
@@ -69,7 +69,7 @@ def test_memory_is_what_a_run_takes_at_its_largest(tmp_path, name):
 
 WHOLE = {
     "paper": ("cube", {"dx": 1e-3, "flaw_width": 3e-3, "time_scale": 16.0, "shape": "Linear"}),
-    "directional": ("cube_lab", {"dx": 1e-3, "loading.time_scale": 100.0}),
+    "directional": ("cube_lab", {"dx": 1e-3, "length": 2e-3, "loading.time_scale": 100.0}),
 }
 
 

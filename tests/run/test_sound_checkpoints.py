@@ -26,7 +26,7 @@ SCENES = {
     "paper": lambda: load_scene("cube", **COARSE),
     "elastic, affine": lambda: replace(load_scene("cube", **COARSE).elastic(), transfer=Apic()),
     "lab": lambda: load_scene("cube_lab", dx=2.5e-3, flaw_width=7.5e-3, length=5e-3),
-    "uneven": lambda: load_scene("intact_weibull", dx=1e-3),
+    "uneven": lambda: load_scene("intact_weibull", dx=1e-3, length=2e-3),
     "3D": lambda: load_scene(str(Path(__file__).parents[1] / "block_3d.py"), dx=5e-3),
 }
 

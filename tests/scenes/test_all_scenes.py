@@ -83,24 +83,24 @@ NUMBERS = {
         source="Mohr-Coulomb; the uniform state is exact on a grid that goes with the platens",
     ),
     "cube_lab": Number(
-        name="first_crack_angles_deg", pinned=65.5, rel=0.05, bounds=(60.0, 107.0),
+        name="first_crack_angles_deg", pinned=68.2, rel=0.05, bounds=(60.0, 107.0),
         source="hoop tension of a round end is largest 70 to 97 degrees from the flaw, by its width; coarse: 10 more",
     ),
     "disc_lab": Number(
-        name="first_crack_angles_deg", pinned=70.0, rel=0.05, bounds=(60.0, 93.0),
+        name="first_crack_angles_deg", pinned=69.6, rel=0.05, bounds=(60.0, 93.0),
         source="Erdogan & Sih on N_I = -1.307, N_II = 2.068 of Atkinson et al.: 82.9 degrees from the flaw; a round end"
         " opens up to 18 degrees nearer to it than a sharp one; coarse: 5 to 10 more",
     ),
     "confined": Number(
-        name="apparent_modulus_Pa", pinned=16.175e9, rel=2e-3, bounds=with_holes(7.5e-3, 3e-3),
+        name="apparent_modulus_Pa", pinned=16.373e9, rel=2e-3, bounds=with_holes(7.5e-3, 1.875e-3),
         source="Kachanov: pressure, in the flaw too, leaves the slope of linear elasticity as it is",
     ),
     "two_flaws": Number(
-        name="apparent_modulus_Pa", pinned=16.258e9, rel=2e-3, bounds=with_holes(6e-3, 1.875e-3, count=2),
+        name="apparent_modulus_Pa", pinned=16.188e9, rel=2e-3, bounds=with_holes(6e-3, 1.875e-3, count=2),
         source="Kachanov, of flaws that do not feel each other",
     ),
     "intact_weibull": Number(
-        name="onset_stress_Pa", pinned=5.179e6, rel=0.02,
+        name="onset_stress_Pa", pinned=5.188e6, rel=0.02,
         bounds=tuple(UCS * x for x in weakest(50e-3 * 100e-3 / (math.pi * 2e-3**2), 6.0)),
         source="Weibull: uniform stress until the weakest of 398 patches begins to fail",
     ),

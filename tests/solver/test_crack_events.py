@@ -113,7 +113,7 @@ def test_ledger_is_the_sum_of_what_particles_have_lost(softening):
 
 def test_strength_is_lost_by_the_mean_opening_and_a_particle_fails_by_its_own():
     """The particle's own opening costs f w at full strength; half of that would be given back on closing."""
-    sim = cell(Directional(softening=LinearSoftening(G_f_I=G_F, G_f_II=100.0)), Nonlocal(length=DX))
+    sim = cell(Directional(softening=LinearSoftening(G_f_I=G_F, G_f_II=100.0)), Nonlocal(length=2.0 * DX))
     particles, half = sim.particles, G_F / TENSILE / DX  # the strain at which half of the strength is lost
     particles.mode.fill(1)
     particles.history.crack_normal.fill(ti.Vector([0.0, 1.0]))

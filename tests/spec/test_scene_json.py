@@ -113,10 +113,17 @@ def test_whole_numbers_will_do_for_numbers():
     assert from_plain(plain).density == 4 * 2600.0
 
 
-def test_scene_recorded_before_the_move_still_loads():
-    """Written by the code of 2026-11-23; fields that are new since then have their defaults, others new names."""
-    path = Path(__file__).parent / "recorded_disc_lab.json"
-    recorded = json.loads(path.read_text())["scene"]
+def test_scene_recorded_before_the_move_still_loads(tmp_path):
+    """Written by the code of 2026-11-23; fields that are new since then have their defaults, others new names.
+
+    Its mean is over one cell, which was allowed then and is refused by name now.
+    """
+    path = tmp_path / "recorded.json"
+    manifest = json.loads((Path(__file__).parent / "recorded_disc_lab.json").read_text())
+    recorded = manifest["scene"]
+    assert "rock.nonlocal_mean.length = 0.001 is refused" in refusal(lambda: from_plain(recorded))
+    recorded["rock"]["averaging"]["length"] = 2e-3
+    path.write_text(json.dumps(manifest))
     recorded["loading"] |= {"cell": to_plain(LoadCell()), "initial_stress": None, "settle": False}
     recorded["loading"] |= {"servo": None, "local_damping": None}
     for platen in recorded["loading"]["boundaries"]:

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from rsmpm_ti.study.shear_band import WIDTH, bands, fullest_strip
+from rsmpm_ti.study.shear_band import COULOMB, DILATION, FRICTION, WIDTH, arthur, bands, fullest_strip, roscoe
 
 MM = 1e-3
 
@@ -38,3 +38,32 @@ def test_strip_lies_where_the_band_is():
     normal = np.array([-np.sin(np.radians(strip.angle)), np.cos(np.radians(strip.angle))])
     spare = 0.5 * (WIDTH - 3.0 * MM)  # the strip is wider than the band by this much on each side
     assert strip.position == pytest.approx(normal @ (30.0 * MM, 50.0 * MM), abs=2.0 * spare)
+
+
+def critical_hardening(angle: float, psi: float) -> float:
+    """Hardening modulus over mu below which rock may band at an angle from the horizontal under axial compression.
+
+    Where the acoustic tensor of the flow is singular, (Q:D.n) A^-1 (n.D:P) - Q:D:P with flow P and normal Q of
+    Mohr-Coulomb: Rudnicki & Rice (1975), J. Mech. Phys. Solids 23:371. E = 17 GPa, nu = 0.14.
+    """
+    mu, lam = 1.0, 2.0 * 0.14 / (1.0 - 2.0 * 0.14)
+
+    def stiffness(e):
+        return lam * np.trace(e) * np.eye(3) + 2.0 * mu * e
+
+    flow, normal = (np.diag([0.5 * (1.0 + s), -0.5 * (1.0 - s), 0.0]) for s in np.sin(np.radians([psi, FRICTION])))
+    n = np.array([-np.sin(np.radians(angle)), np.cos(np.radians(angle)), 0.0])
+    acoustic = (lam + mu) * np.outer(n, n) + mu * np.eye(3)
+    across = (stiffness(normal) @ n) @ np.linalg.solve(acoustic, stiffness(flow) @ n)
+    return float(across - (normal * stiffness(flow)).sum())
+
+
+@pytest.mark.parametrize("psi", DILATION)
+def test_arthurs_angle_is_where_rock_bands_first_and_roscoes_and_coulombs_end_the_range(psi):
+    angles = np.arange(roscoe(psi), COULOMB, 0.05)
+    critical = np.array([critical_hardening(angle, psi) for angle in angles])
+    assert critical_hardening(roscoe(psi), psi) == pytest.approx(0.0, abs=1e-12)
+    assert critical_hardening(COULOMB, psi) == pytest.approx(0.0, abs=1e-12)
+    assert (critical[1:] > 0.0).all() and abs(angles[critical.argmax()] - arthur(psi)) < 0.7
+    # this rock softens from its first slip on, by c^2 h/(2 G_f_II) cos(phi) = 0.15 mu, h = 2 mm: it may band beyond
+    assert critical_hardening(roscoe(psi) - 7.0, psi) > -0.15 and critical_hardening(COULOMB + 10.0, psi) > -0.15

@@ -42,7 +42,7 @@ def strength_left(sim: ti.template(), p):
     full = strengths(sim, p)
     n = soft.ratio(sim.rock.nonlocal_mean.softening_strain(sim, p), full[0], soft.G_f_I, sim.band)
     t = soft.ratio(h.crack_strain_max[p][1], full[0], soft.G_f_I, sim.band)
-    shear = soft.ratio(h.slip[p], full[1], soft.G_f_II, sim.band)
+    shear = soft.ratio(sim.rock.nonlocal_mean.softening_slip(sim, p), full[1], soft.G_f_II, sim.band)
     if sim.particles.mode[p] == 2:
         t = ti.min(t, shear)
     return ti.Vector([ti.min(n, shear) * full[0], t * full[0], shear * full[1]])
@@ -148,6 +148,7 @@ def crush(sim: ti.template(), p):
     particles, h = sim.particles, sim.particles.history
     particles.mode[p] = 2
     h.slip[p] = ti.max(h.slip[p], MIN_CRACK_STRAIN)
+    sim.rock.nonlocal_mean.begin_slip(sim, p, MIN_CRACK_STRAIN)
     pores = h.crack_strain[p][0] + h.crack_strain[p][1]
     h.crack_strain[p] = ti.Vector([pores, 0.0])
     h.crack_strain_max[p] = ti.max(h.crack_strain_max[p], h.crack_strain[p])

@@ -102,7 +102,7 @@ def memory_of_particles(scene, count: float) -> float:
     whole = 4  # id, key, base, order
     event = 0
     if rock.criterion.breaks:
-        law, nonlocal_fields = rock.after_failure, 3 + dim
+        law, nonlocal_fields = rock.after_failure, 5 + dim
         whole += 1 + sum(v.whole for v in law.history)
         reals += sum(dim if v.per_axis else 1 for v in law.history if not v.whole)
         reals += nonlocal_fields * rock.nonlocal_mean.acts
@@ -113,7 +113,7 @@ def memory_of_particles(scene, count: float) -> float:
 def memory_of_nodes(scene, count: float) -> float:
     """Bytes of the fields of all nodes, of the sparse grid where it has material, in double precision."""
     reals, nodes = 1 + scene.dim * (4 if scene.order == "musl" else 2), math.prod(scene.domain.node_counts)
-    means = 2 * 6 + 1.5 if scene.rock.criterion.breaks and scene.rock.nonlocal_mean.acts else 0.0
+    means = 2 * 7 + 1.5 if scene.rock.criterion.breaks and scene.rock.nonlocal_mean.acts else 0.0
     if not use_sparse_grid(scene, count):
         return 8.0 * (reals + means) * nodes
     edge = BLOCK * scene.domain.dx
