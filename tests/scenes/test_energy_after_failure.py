@@ -25,4 +25,6 @@ def test_dissipated_energy_never_falls_and_the_balance_closes(tmp_path, scene, t
         for name in ("energy_kinetic_J", "energy_elastic_J", "energy_dissipated_J", "work_J")
     )
     assert (np.maximum.accumulate(lost) - lost).max() < 1e-4 * work.max()
-    assert np.abs(work - kinetic - elastic - lost).max() < 5e-3 * work.max()
+    missing = work - kinetic - elastic - lost
+    missing -= missing[0]  # what the confining pressure has stored before the test begins
+    assert np.abs(missing).max() < 5e-3 * work.max()
