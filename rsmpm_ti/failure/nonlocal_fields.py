@@ -147,7 +147,8 @@ def read_crack_strains(sim: ti.template()):
                 total = means.sums[base + ti.Vector(offset)]
                 slope = tensor_gradient(w, dw, offset)
                 gradient += (total[5] - strain / volume * total[4]) * slope
-            away = ti.abs(sim.grid.space_vector(gradient).dot(particles.history.crack_normal[p])) * means.variance / ti.max(strain, 1e-30)
+            across = sim.grid.space_vector(gradient).dot(particles.history.crack_normal[p])
+            away = ti.abs(across) * means.variance / ti.max(strain, 1e-30)
             part = ti.max(0.0, ti.min(1.0, 2.0 - 2.0 * away / sim.band))
             away = ti.min(away, 0.5 * sim.band)
             middle = ti.exp(0.5 * away * away / means.variance) * strain / volume

@@ -1,5 +1,6 @@
 """Uniaxial compression or tension of a plate between two smooth platens."""
 
+from rsmpm_ti.method.transfer import Apic, PicFlip
 from rsmpm_ti.rock.rock import Rock
 from rsmpm_ti.spec.boundaries import Platen
 from rsmpm_ti.spec.domain import Domain
@@ -22,6 +23,7 @@ def uniaxial_test(
     height: float = 100e-3,
     room: float = 5e-3,
     turn: float = 0.0,
+    transfer: PicFlip | Apic | None = None,
     speed: float = 2.5e-3,
     time_scale: float | str = 1.0,
     confinement: float = 0.0,
@@ -53,5 +55,6 @@ def uniaxial_test(
             cell=cell or LoadCell(),
         ),
         schedule=Schedule(strain_end=strain_end, cfl=cfl),
+        transfer=transfer or PicFlip(),
         output=output or Output(),
     )  # fmt: skip

@@ -1,4 +1,4 @@
-"""The background grid of a scene: how far it reaches, how fine it is, how it lies, and what becomes of what leaves it."""
+"""The background grid of a scene: how far it reaches, how it lies, how fine it is, what becomes of what leaves it."""
 
 import math
 from dataclasses import dataclass

@@ -120,7 +120,9 @@ def _check_turned(scene) -> None:
         if not isinstance(platen, Platen) or platen.unilateral or platen.bonded:
             raise refuse(f"boundaries[{k}]", platen, "a Platen with pulls = True on a turned grid", remedy)
         if platen.held or platen.friction or platen.span is not None:
-            raise refuse(f"boundaries[{k}]", platen, "one of a speed, smooth and without a span on a turned grid", remedy)
+            raise refuse(
+                f"boundaries[{k}]", platen, "one of a speed, smooth and without a span on a turned grid", remedy
+            )
 
 
 def _check_sides(loading) -> None:
