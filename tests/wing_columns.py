@@ -1,4 +1,4 @@
-"""How far the wings of one flaw follow columns, and what else the picture of the paper's example is held to. NumPy only."""
+"""How far the wings of a flaw follow columns, and what else the paper's example is held to. NumPy only."""
 
 from dataclasses import dataclass
 

@@ -11,6 +11,7 @@ from rsmpm_ti.analysis.load_curve import loading_curve
 from rsmpm_ti.analysis.neighbours import bands_of, neighbour_graph
 from rsmpm_ti.analysis.wing_cracks import crack_directions, leaving_angle
 from rsmpm_ti.errors import UnstableRun
+from rsmpm_ti.method.transfer import PicFlip
 from rsmpm_ti.records.snapshot import TENSION
 from rsmpm_ti.solver.advance import Drive
 from rsmpm_ti.solver.history import History
@@ -48,7 +49,10 @@ def flawed_scene(*, specimen: str, angle: float, dx: float, paper: bool) -> Scen
     """
     common = {"dx": dx, "flaw_width": WIDTH, "time_scale": 16.0, "strain_end": STRAIN_END[specimen]}
     if specimen == "cube":
-        return load_scene("cube" if paper else "cube_lab", flaw_angle=angle, **common)
+        if not paper:
+            return load_scene("cube_lab", flaw_angle=angle, **common)
+        along = {"bodies.0.seeding": Jittered(), "transfer": PicFlip()}  # as the disc, on a grid along the specimen
+        return load_scene("cube", flaw_angle=angle, turn=0.0, settings=along, **common)
     scene = load_scene("disc", flaw_angle=90.0 - angle, **common)
     if paper:
         return scene

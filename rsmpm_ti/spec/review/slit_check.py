@@ -203,7 +203,8 @@ def _tie_of_width(region, slit: Slit, width: float, seeding, shape, dx: float, o
     patch = _Patch(lower=np.maximum(lower, low - 5 * dx), upper=np.minimum(upper, high + 5 * dx), slit=trial)
     seeds = seeding.fill(patch, origin[:2], dx)
     if turn is not None:
-        return slit_tie(*turn.back(seeds, trial), shape, dx, np.zeros(2))
+        seeds, trial = turn.back(seeds, trial)
+        return slit_tie(seeds, trial, shape, dx, np.zeros(2))
     return slit_tie(seeds, trial, shape, dx, origin)
 
 

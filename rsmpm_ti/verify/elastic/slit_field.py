@@ -9,6 +9,7 @@ from rsmpm_ti import load_scene
 from rsmpm_ti.cases.case import Case, Outcome, Row, at_most, difference, relative
 from rsmpm_ti.cases.static_state import static_state
 from rsmpm_ti.method.shape import Gimp, Linear, QuadraticBSpline
+from rsmpm_ti.method.transfer import PicFlip
 from rsmpm_ti.spec.regions import Slit, slits_of
 from rsmpm_ti.spec.scene import Scene
 from rsmpm_ti.spec.seeding import Lattice
@@ -73,9 +74,9 @@ CELLS = 4
 
 def slit_specimen(dx: float, width: float, shape=None, seeding=None) -> Scene:
     """The cube scene with a slit for which there is an FE field; a lattice with fitted edges unless told otherwise."""
-    scene = load_scene("cube", dx=dx, flaw_width=width)
+    scene = load_scene("cube", turn=0.0, dx=dx, flaw_width=width)
     body = replace(scene.bodies[0], seeding=seeding or Lattice(fitted=True))
-    return replace(scene, shape=shape or QuadraticBSpline(), bodies=(body,))
+    return replace(scene, shape=shape or QuadraticBSpline(), transfer=PicFlip(), bodies=(body,))
 
 
 def compare(scene: Scene, field: FiniteElementField, within: float = math.inf) -> tuple[FieldError, float]:
