@@ -38,6 +38,9 @@ TIP_DISTANCE = 6e-3
 MIDDLE = 0.3
 """A crack began in the middle of the flaw if its place along the flaw is less than this fraction of half its length."""
 
+JITTERED = {"bodies.0.seeding": Jittered(), "transfer": PicFlip()}
+"""Both scenes of the paper, on a grid along their specimens."""
+
 LAST = 0.2
 """The load at onset is read from a line through this last fraction of the loading before it."""
 
@@ -51,9 +54,8 @@ def flawed_scene(*, specimen: str, angle: float, dx: float, paper: bool) -> Scen
     if specimen == "cube":
         if not paper:
             return load_scene("cube_lab", flaw_angle=angle, **common)
-        along = {"bodies.0.seeding": Jittered(), "transfer": PicFlip()}  # as the disc, on a grid along the specimen
-        return load_scene("cube", flaw_angle=angle, turn=0.0, settings=along, **common)
-    scene = load_scene("disc", flaw_angle=90.0 - angle, **common)
+        return load_scene("cube", flaw_angle=angle, turn=0.0, settings=JITTERED, **common)
+    scene = load_scene("disc", flaw_angle=90.0 - angle, settings=JITTERED, **common)
     if paper:
         return scene
     region = scene.bodies[0].region
