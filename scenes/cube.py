@@ -1,6 +1,6 @@
 """The paper's first example: a 50 x 100 mm specimen with an inclined flaw under uniaxial compression (sec. 4.1)."""
 
-from rsmpm_ti import Angle, GPa, Hooke, Jittered, Length, MohrCoulomb, MPa, Rock, Scene, Slit, mm, uniaxial_test
+from rsmpm_ti import Angle, GPa, Hooke, Lattice, Length, MohrCoulomb, MPa, PicFlip, Rock, Scene, Slit, mm, uniaxial_test
 
 QUICK = {"dx": 1.0 * mm, "flaw_width": 3.0 * mm, "time_scale": 16.0}
 
@@ -11,6 +11,7 @@ def scene(
     flaw_length: Length = 15.0 * mm,
     flaw_width: Length = 1.5 * mm,
     dx: Length = 0.5 * mm,
+    turn: Angle = -26.565,  # of the grid; arctan(1/2): neither along the specimen nor along its flaw
     strain_end: float = 2.5e-4,
     time_scale: float | str = 5.0,
 ) -> Scene:
@@ -24,8 +25,10 @@ def scene(
         title="Uniaxial compression of a specimen with an inclined flaw",
         rock=rock,
         flaws=(flaw,),
-        seeding=Jittered(amount=0.1),
+        seeding=Lattice(),
         dx=dx,
+        turn=turn,
+        transfer=PicFlip(flip=0.99),  # what the grid does not see of velocities would show in the stress
         strain_end=strain_end,
         time_scale=time_scale,
         cfl=1.0,

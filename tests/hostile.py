@@ -67,7 +67,7 @@ GIVEN = {
 @functools.cache
 def bases() -> list[Scene]:
     """Small scenes in which together every class can stand."""
-    plain = load_scene("cube", dx=2e-3, flaw_width=6e-3)
+    plain = load_scene("cube", turn=0.0, dx=2e-3, flaw_width=6e-3)  # walls and clamps need planes of nodes
     lab = load_scene("cube_lab", dx=1e-3, length=2e-3)
     little = Box(lower=(0.0, 0.04), upper=(0.01, 0.06))
     lab = replace(lab, bodies=(replace(lab.bodies[0], region=little),))

@@ -87,7 +87,7 @@ def test_override_reaches_a_keyword_and_a_dotted_field():
     assert scene_of("cube", "--quick", "--set", "schedule.cfl=0.3").dt == pytest.approx(
         0.3 / plain.schedule.cfl * plain.dt, rel=1e-12
     )
-    turned = scene_of("cube", "--quick", "--set", "flaw_angle=30", "--set", "bodies.0.seeding.seed=7")
+    turned = scene_of("disc_lab", "--set", "flaw_angle=30", "--set", "bodies.0.seeding.seed=7")
     assert turned.bodies[0].region.removed[0].angle == 30.0
     assert turned.bodies[0].seeding.seed == 7
     assert scene_of("cube", "--set", "domain.grid=sparse").domain.grid == "sparse"

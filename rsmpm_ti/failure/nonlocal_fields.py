@@ -165,7 +165,8 @@ def read_crack_strains(sim: ti.template()):
                 slope = tensor_gradient(w, dw, offset) / volume
                 opened_slope += (total[5] - opened * total[4]) * slope
                 slipped_slope += (total[6] - slipped * total[4]) * slope
-            strain, part = strain_of_band(sim, opened, ti.abs(opened_slope.dot(particles.history.crack_normal[p])))
+            across = sim.grid.space_vector(opened_slope).dot(particles.history.crack_normal[p])
+            strain, part = strain_of_band(sim, opened, ti.abs(across))
             slip, within = strain_of_band(sim, slipped, slipped_slope.norm())
             particles.crack_strain_nonlocal[p] = part * strain
             particles.slip_nonlocal[p] = within * slip + (1.0 - within) * particles.history.slip[p]

@@ -19,8 +19,17 @@ class Geometry:
         beyond = MARGIN + domain.room
         self.nodes = domain.node_counts
         self.origin = tuple(float(a) - beyond * domain.dx for a in domain.lower)
+        # a turned grid lies still: platens have no planes of nodes, and press by their position
+        self.turned, self.direction, self.pressed = domain.turn != 0.0, domain.direction, domain.pressed
+        self.centre, self.middle = domain.middle, tuple(0.5 * (n - 1) for n in self.nodes)
+        edges = (b - a for a, b in zip(domain.lower, domain.upper, strict=True))
+        self.reach = tuple(
+            0.5 * edge / domain.dx + beyond - 1.0 for edge in edges
+        )  # of particles from the centre [cells]
+        if self.turned:
+            self.origin = tuple(c - n * domain.dx for c, n in zip(self.centre, self.middle, strict=True))
         lower, upper = [NO_WALL] * dim, [-NO_WALL] * dim
-        for boundary in scene.loading.boundaries:
+        for boundary in () if self.turned else scene.loading.boundaries:
             row = self.row(boundary)
             if boundary.side == "lower":
                 lower[boundary.axis] = max(lower[boundary.axis], row)
@@ -60,8 +69,17 @@ class Geometry:
         An axis along which nothing moves keeps those of the start.
         """
         frame = np.array([(origin, self.inv_dx, self.dx) for origin in self.origin])
-        for d in self.followed:
+        for d in () if self.turned else self.followed:
             stretch = (travel[d, 1] - travel[d, 0]) / (self.rows[d][1] - self.rows[d][0])
             spacing = self.dx + stretch
             frame[d] = self.origin[d] + travel[d, 0] - self.rows[d][0] * stretch, 1.0 / spacing, spacing
         return frame
+
+    def coordinates_at(self, x: np.ndarray, frame: np.ndarray | None = None) -> np.ndarray:
+        """Grid coordinates of places x [n, dim] [m], in cells from the first node; of a frame, by default the first."""
+        origin, inverse = (np.array(self.origin), self.inv_dx) if frame is None else (frame[:, 0], frame[:, 1])
+        xi = (x - origin) * inverse
+        if self.turned:
+            (c, s), middle = self.direction, np.array(self.middle)
+            xi = middle + (xi - middle) @ np.array([[c, -s], [s, c]])
+        return xi

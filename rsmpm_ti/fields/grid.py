@@ -23,6 +23,13 @@ class Grid(Geometry):
     under uniform strain no particle changes its place in its cell: uniform strain stays exact, however large. With a
     boundary on one side only, the grid moves as a whole.
 
+    A turned grid lies still, only `travel` is counted. With R of its axes as columns, about the domain's middle,
+
+        x_i = centre + R (i - middle) dx,    grad = R grad_xi / dx,
+
+    and a frame's origin is that before the turn. Vectors and tensors of nodes and particles stay along the axes of
+    space: L = L_xi R^T and sigma . grad w = (sigma R) . grad_xi w / dx (`space_gradient`, `along_grid`).
+
     A frame [dim, 3] is origin, 1/spacing and spacing for each axis. Node values of a step belong to `start_frame`, that
     of the step's start; what particles give to nodes for the next step to `frame`, that of the time they are at.
     """
@@ -111,12 +118,13 @@ class Grid(Geometry):
                 self.travel[d, ti.static(1 - self.alone[d])] = self.travel[d, ti.static(self.alone[d])]
             for column in ti.static(range(3)):
                 self._start[d, column] = self._now[d, column]
-            rows = ti.static(self.rows[d])
-            stretch = (self.travel[d, 1] - self.travel[d, 0]) / ti.static(float(rows[1] - rows[0]))
-            spacing = ti.static(self.dx) + stretch
-            self._now[d, 0] = ti.static(self.origin[d]) + self.travel[d, 0] - ti.static(float(rows[0])) * stretch
-            self._now[d, 1] = 1.0 / spacing
-            self._now[d, 2] = spacing
+            if ti.static(not self.turned):
+                rows = ti.static(self.rows[d])
+                stretch = (self.travel[d, 1] - self.travel[d, 0]) / ti.static(float(rows[1] - rows[0]))
+                spacing = ti.static(self.dx) + stretch
+                self._now[d, 0] = ti.static(self.origin[d]) + self.travel[d, 0] - ti.static(float(rows[0])) * stretch
+                self._now[d, 1] = 1.0 / spacing
+                self._now[d, 2] = spacing
 
     @ti.func
     def settle(self):
@@ -152,7 +160,41 @@ class Grid(Geometry):
         xi = ti.Vector.zero(float, self.dim)
         for d in ti.static(range(self.dim)):
             xi[d] = (x[d] - frame[d, 0]) * frame[d, 1]
+        if ti.static(self.turned):
+            c, s = self.direction[0], self.direction[1]
+            a, b = xi[0] - self.middle[0], xi[1] - self.middle[1]
+            xi[0], xi[1] = self.middle[0] + c * a + s * b, self.middle[1] - s * a + c * b
         return xi
+
+    @ti.func
+    def along_grid(self, tensor):
+        """sigma R: columns of a tensor of space along the axes of the grid."""
+        found = tensor
+        if ti.static(self.turned):
+            c, s = self.direction[0], self.direction[1]
+            for d in ti.static(range(2)):
+                found[d, 0], found[d, 1] = c * tensor[d, 0] + s * tensor[d, 1], c * tensor[d, 1] - s * tensor[d, 0]
+        return found
+
+    @ti.func
+    def space_vector(self, v):
+        """R v: a vector along the grid's axes, now along those of space."""
+        found = v
+        if ti.static(self.turned):
+            c, s = self.direction[0], self.direction[1]
+            found[0], found[1] = c * v[0] - s * v[1], s * v[0] + c * v[1]
+        return found
+
+    @ti.func
+    def space_gradient(self, gradient):
+        """L R^T: gradients of vectors along the grid's axes, now along those of space."""
+        found = gradient
+        if ti.static(self.turned):
+            c, s = self.direction[0], self.direction[1]
+            for d in ti.static(range(2)):
+                a, b = gradient[d, 0], gradient[d, 1]
+                found[d, 0], found[d, 1] = c * a - s * b, s * a + c * b
+        return found
 
     @ti.func
     def base(self, xi, shape: ti.template()):
@@ -183,4 +225,9 @@ class Grid(Geometry):
     @ti.func
     def label(self, i):
         """Where node i was at the start."""
-        return ti.Vector(self.origin) + i * self.dx
+        x = ti.Vector(self.origin) + i * self.dx
+        if ti.static(self.turned):
+            c, s = self.direction[0], self.direction[1]
+            a, b = x[0] - self.centre[0], x[1] - self.centre[1]
+            x[0], x[1] = self.centre[0] + c * a - s * b, self.centre[1] + s * a + c * b
+        return x

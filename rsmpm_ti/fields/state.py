@@ -112,7 +112,7 @@ class Simulation:
         particles = self.particles
         v = np.concatenate([initial_velocity(scene, k, body.x) for k, body in enumerate(seeds)])
         # already in cell order, so that the first sort has nothing to move and its kernel need not be compiled
-        base = np.floor((x - np.array(self.grid.origin)) * self.grid.inv_dx - self.shape.shift).astype(int)
+        base = np.floor(self.grid.coordinates_at(x) - self.shape.shift).astype(int)
         order = np.argsort(np.ravel_multi_index(base.T, self.grid.nodes, mode="clip"), kind="stable")
         particles.reference.from_numpy(x[order].astype(kind))
         particles.v.from_numpy(v[order].astype(kind))

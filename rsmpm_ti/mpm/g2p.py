@@ -94,7 +94,7 @@ def nodes_to_particles(sim: ti.template(), start, stop, slot, what: ti.template(
             xi = coordinates(sim, p, frame)
             w, dw = weights_and_gradients(sim, xi, base, frame)
             if ti.static(what.stress):
-                particles.L[p] = velocity_gradient(sim, w, dw, w_i)
+                particles.L[p] = sim.grid.space_gradient(velocity_gradient(sim, w, dw, w_i))
             if ti.static(what.velocity):
                 v_middle = velocity_to_particle(sim, p, w, xi, base, frame, v_i, dv_i, slot)
                 work += body_work(sim, p, v_middle, dt, time)

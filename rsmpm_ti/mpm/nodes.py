@@ -57,12 +57,46 @@ def speed_of(sim: ti.template(), b: ti.template(), factor):
 
 
 @ti.func
+def held_by(sim: ti.template(), boundary: ti.template(), i):
+    """Whether a boundary holds node i.
+
+    On a turned grid it is a platen that presses by its position, where it is now, and holds all nodes that lie so near
+    to it that their rock is not all there (`Domain.pressed`): every free node then is in balance in uniform stress.
+    """
+    x = sim.grid.label(i)
+    if ti.static(sim.grid.turned):
+        axis = ti.static(boundary.axis)
+        if ti.static(boundary.side == "upper"):
+            x[axis] += sim.grid.pressed - ti.cast(sim.grid.travel[axis, 1], float)
+        else:
+            x[axis] -= sim.grid.pressed + ti.cast(sim.grid.travel[axis, 0], float)
+    return boundary.holds(x, sim.grid.dx)
+
+
+@ti.func
+def node_speed(sim: ti.template(), b: ti.template(), i, factor):
+    """Speed along its axis at which a boundary holds node i [m/s]: its own.
+
+    On a turned grid that of uniform straining between both platens, which it is at the platen itself.
+    """
+    speed = speed_of(sim, b, factor)
+    if ti.static(sim.grid.turned):
+        axis, other = ti.static(sim.boundaries[b].axis, 1 - b)
+        way = ti.static(sim.boundaries[other].position - sim.boundaries[b].position)
+        side = ti.static(1 if sim.boundaries[b].side == "upper" else 0)
+        gone, far = sim.grid.travel[axis, side], sim.grid.travel[axis, 1 - side]
+        rate = (speed_of(sim, other, factor) - speed) / (way + ti.cast(far - gone, float))
+        speed += rate * (sim.grid.label(i)[axis] - sim.boundaries[b].position - ti.cast(gone, float))
+    return speed
+
+
+@ti.func
 def hold(sim: ti.template(), i, v, factor):
     """Velocity mapped apart from force, after every boundary that holds the node: as the node was held last."""
     held = v
     for b, boundary in ti.static(enumerate(sim.boundaries)):
-        if boundary.holds(sim.grid.label(i), sim.grid.dx):
-            held = boundary.keep(held, speed_of(sim, b, factor), factor, kept_state(sim, b, i))
+        if held_by(sim, boundary, i):
+            held = boundary.keep(held, node_speed(sim, b, i, factor), factor, kept_state(sim, b, i))
     return held
 
 
@@ -118,10 +152,10 @@ def accelerate(sim: ti.template(), i, velocity: ti.template(), dt, factor):
             v += dt * inverse * nodes.f[i]
         v += dt * ti.Vector(sim.acceleration)
         for b, boundary in ti.static(enumerate(sim.boundaries)):
-            if boundary.holds(sim.grid.label(i), sim.grid.dx):
+            if held_by(sim, boundary, i):
                 held, state = v, 0
                 if touching(sim, b, i):
-                    held, state = boundary.project(v, speed_of(sim, b, factor), factor, squeeze(sim, dt))
+                    held, state = boundary.project(v, node_speed(sim, b, i, factor), factor, squeeze(sim, dt))
                 keep_state(sim, b, i, state)
                 impulse = ti.cast(m * (held - v), ti.f64)
                 work = impulse.dot(ti.cast(held, ti.f64))

@@ -109,7 +109,7 @@ def add_particle(
     """
     last = ti.static(sim.dim - 1)
     m_p = sim.density * sim.particles.volume[p]
-    mv_p, sigma = m_p * sim.particles.v[p], unpack(stress_on_nodes(sim, p))
+    mv_p, sigma = m_p * sim.particles.v[p], sim.grid.along_grid(unpack(stress_on_nodes(sim, p)))
     body_force = m_p * field_acceleration(sim, p, time)
     for row, nodes in ti.static(sim.rows):
         w_row, dw_row = row_weight(w, row), row_gradient(w, dw, row)

@@ -4,6 +4,7 @@ import math
 from collections.abc import Callable
 
 from rsmpm_ti.method.shape import Gimp, Linear, QuadraticBSpline
+from rsmpm_ti.method.transfer import Apic, PicFlip
 from rsmpm_ti.rock.rock import Rock
 from rsmpm_ti.spec.boundaries import Platen
 from rsmpm_ti.spec.domain import Domain
@@ -31,6 +32,7 @@ def brazilian_test(
     time_scale: float | str = 1.0,
     cfl: float = 0.5,
     shape: Linear | Gimp | QuadraticBSpline | None = None,
+    transfer: PicFlip | Apic | None = None,
     cell: LoadCell | None = None,
     output: Output | None = None,
 ) -> Scene:
@@ -62,6 +64,7 @@ def brazilian_test(
             ),
             schedule=Schedule(strain_end=strain_end, cfl=cfl),
             shape=shape or QuadraticBSpline(),
+            transfer=transfer or PicFlip(),
             output=output or Output(),
         )  # fmt: skip
 

@@ -1,5 +1,6 @@
 """Uniaxial compression or tension of a plate between two smooth platens."""
 
+from rsmpm_ti.method.transfer import Apic, PicFlip
 from rsmpm_ti.rock.rock import Rock
 from rsmpm_ti.spec.boundaries import Platen
 from rsmpm_ti.spec.domain import Domain
@@ -21,6 +22,8 @@ def uniaxial_test(
     width: float = 50e-3,
     height: float = 100e-3,
     room: float = 5e-3,
+    turn: float = 0.0,
+    transfer: PicFlip | Apic | None = None,
     speed: float = 2.5e-3,
     time_scale: float | str = 1.0,
     confinement: float = 0.0,
@@ -31,18 +34,20 @@ def uniaxial_test(
     """A plate of width x height [m], its lower left corner at the origin, loaded along y from uniform straining on.
 
     flaws: slits cut into it, in the plate's coordinates; seeding: Lattice() by default; room: empty grid on both sides
-    [m], into which it may bulge and pieces may fly; speed: at which each platen closes in [m/s];
+    [m], into which it may bulge and pieces may fly; turn: of the grid against the plate [degrees], whose platens then
+    hold both ways (`Domain.turn`); speed: at which each platen closes in [m/s];
     a negative one, with a negative strain_end, pulls: direct tension. cell: what is measured; by default the force of
     both platens over the width.
     """
     plate = Box(lower=(0.0, 0.0), upper=(width, height))
+    glued = speed < 0.0 or turn != 0.0
     platens = (
-        Platen(axis=1, side="lower", position=0.0, speed=speed, pulls=speed < 0.0),
-        Platen(axis=1, side="upper", position=height, speed=-speed, pulls=speed < 0.0),
+        Platen(axis=1, side="lower", position=0.0, speed=speed, pulls=glued),
+        Platen(axis=1, side="upper", position=height, speed=-speed, pulls=glued),
     )
     return Scene(
         title=title,
-        domain=Domain(lower=(-room, 0.0), upper=(round(width + room, 12), height), dx=dx),
+        domain=Domain(lower=(-room, 0.0), upper=(round(width + room, 12), height), dx=dx, turn=turn),
         bodies=(Body(region=Difference(whole=plate, removed=flaws) if flaws else plate, seeding=seeding or Lattice()),),
         rock=rock,
         loading=Loading(
@@ -50,5 +55,6 @@ def uniaxial_test(
             cell=cell or LoadCell(),
         ),
         schedule=Schedule(strain_end=strain_end, cfl=cfl),
+        transfer=transfer or PicFlip(),
         output=output or Output(),
     )  # fmt: skip

@@ -42,8 +42,13 @@ class Survey:
 def left_domain(sim: ti.template(), xi):
     """Whether a particle at grid coordinates xi is more than two cells beyond the domain: there stencils may end."""
     left = False
-    for d in ti.static(range(sim.dim)):
-        left = left or xi[d] < 1.0 or xi[d] > sim.grid.nodes[d] - 2.0
+    if ti.static(sim.grid.turned):
+        way = sim.grid.space_vector(xi - ti.Vector(sim.grid.middle))
+        for d in ti.static(range(sim.dim)):
+            left = left or ti.abs(way[d]) > sim.grid.reach[d]
+    else:
+        for d in ti.static(range(sim.dim)):
+            left = left or xi[d] < 1.0 or xi[d] > sim.grid.nodes[d] - 2.0
     return left
 
 

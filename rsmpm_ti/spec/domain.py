@@ -1,4 +1,4 @@
-"""The background grid of a scene: how far it reaches, how fine it is, and what becomes of what leaves it."""
+"""The background grid of a scene: how far it reaches, how it lies, how fine it is, what becomes of what leaves it."""
 
 import math
 from dataclasses import dataclass
@@ -6,11 +6,11 @@ from typing import Annotated, Literal
 
 from annotated_types import Interval
 
-from rsmpm_ti.checks import checked
+from rsmpm_ti.checks import Remedy, checked
 from rsmpm_ti.errors import refuse
 from rsmpm_ti.method.time_step import MAX_COUNT
 from rsmpm_ti.spec.regions import MAX_COORDINATE, Position
-from rsmpm_ti.units import Length
+from rsmpm_ti.units import Angle, Length
 
 MIN_DX = 1e-9
 """Smallest cell [m]: below it rock is no continuum."""
@@ -32,6 +32,10 @@ class Domain:
 
     A particle that flies more than two cells beyond it ends the run; with outside = 'drop' it is taken out of it; with
     'grow' the grid, which must then be sparse, grows to where particles are, up to GROWTH domain lengths on every side.
+
+    `turn`: angle by which the grid lies turned against the box, about its middle, counter-clockwise [degrees], in 2D.
+    Everything else stays along the axes. Rows and columns of cells are then no way for a crack: it grows where the
+    stress sends it. The grid reaches to the corners of the box, and platens press by their position (`pressed`).
     """
 
     lower: Position
@@ -39,6 +43,7 @@ class Domain:
     dx: Annotated[Length, Interval(ge=MIN_DX, le=MAX_COORDINATE)]
     grid: Literal["dense", "sparse", "auto"] = "dense"
     outside: Literal["stop", "drop", "grow"] = "stop"
+    turn: Annotated[Angle, Interval(ge=-45.0, le=45.0), Remedy("a grid looks the same after 90 degrees")] = 0.0
 
     def __post_init__(self):
         if len(self.lower) != len(self.upper):
@@ -50,6 +55,8 @@ class Domain:
         if self.outside == "grow" and self.grid == "dense":
             allowed, remedy = "'stop' or 'drop' with a dense grid", "set domain.grid = 'sparse' to let it grow"
             raise refuse("domain.outside", self.outside, allowed, remedy)
+        if self.turn and len(self.lower) != 2:
+            raise refuse("domain.turn", self.turn, "0 in 3D")
         far = self.farthest
         if not self.dx >= MIN_DX_FRACTION * far:
             allowed = f"at least {MIN_DX_FRACTION * far:.4g} m, {MIN_DX_FRACTION:g} of the largest coordinate"
@@ -76,8 +83,31 @@ class Domain:
     @property
     def node_counts(self) -> tuple[int, ...]:
         """Nodes of the background grid along each axis, those around the domain included."""
-        edges = ((b - a) / self.dx for a, b in zip(self.lower, self.upper, strict=True))
-        return tuple(math.ceil(edge - 1e-6) + 2 * (MARGIN + self.room) + 1 for edge in edges)
+        edges = [(b - a) / self.dx for a, b in zip(self.lower, self.upper, strict=True)]
+        beyond = MARGIN + self.room
+        if self.turn:  # around the turned box, with a node in its middle
+            (c, s), half = self.direction, [0.5 * edge + beyond for edge in edges]
+            across = (abs(c) * half[0] + abs(s) * half[1], abs(s) * half[0] + abs(c) * half[1])
+            return tuple(2 * math.ceil(edge - 1e-6) + 1 for edge in across)
+        return tuple(math.ceil(edge - 1e-6) + 2 * beyond + 1 for edge in edges)
+
+    @property
+    def direction(self) -> tuple[float, float]:
+        """Unit vector of the grid's first axis."""
+        return math.cos(math.radians(self.turn)), math.sin(math.radians(self.turn))
+
+    @property
+    def middle(self) -> tuple[float, ...]:
+        """Of the box [m]."""
+        return tuple(0.5 * (a + b) for a, b in zip(self.lower, self.upper, strict=True))
+
+    @property
+    def pressed(self) -> float:
+        """Depth of rock along a platen whose nodes go with it [m]: none in a grid that is not turned.
+
+        As far as a node inside may have rock on one side only: its force would miss the platen's. See mpm/nodes.py.
+        """
+        return 1.5 * sum(map(abs, self.direction)) * self.dx if self.turn else 0.0
 
     @property
     def farthest(self) -> float:

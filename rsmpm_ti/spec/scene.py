@@ -35,7 +35,7 @@ from rsmpm_ti.spec.regions import Region
 from rsmpm_ti.spec.review.memory import check_memory, check_seeding
 from rsmpm_ti.spec.review.placement import check_flaws, check_overlap, check_platens
 from rsmpm_ti.spec.review.plausible import blamed
-from rsmpm_ti.spec.review.slit_check import check_cuts
+from rsmpm_ti.spec.review.slit_check import Turn, check_cuts
 from rsmpm_ti.spec.scene_checks import check_bodies, check_cracks, check_loading, check_motion, check_stop
 from rsmpm_ti.spec.seeding import Jittered, Lattice, Seeds
 from rsmpm_ti.units import Acceleration, LengthOrArea, Pressure, Spin, Time, Velocity
@@ -326,9 +326,10 @@ class Scene:
         check_seeding(self)
         check_flaws(self)
         origin = np.array(self.domain.lower, dtype=float)
+        turn = Turn(np.array(self.domain.middle), self.domain.turn) if self.domain.turn else None
         seeds = []
         for k, body in enumerate(self.bodies):
-            check_cuts(body, self.shape, self.domain.dx, origin)
+            check_cuts(body, self.shape, self.domain.dx, origin, turn)
             seeds.append(body.seeding.fill(body.region, origin, self.domain.dx))
             if len(seeds[-1].x) == 0:
                 raise SceneError(f"bodies[{k}].region holds no particle: it is smaller than dx = {self.domain.dx} m")

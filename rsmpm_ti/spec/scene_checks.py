@@ -12,6 +12,7 @@ from rsmpm_ti.errors import SceneError, refuse, shown
 from rsmpm_ti.method.shape import Gimp
 from rsmpm_ti.method.time_step import MAX_COUNT
 from rsmpm_ti.rock.after_failure import check_law
+from rsmpm_ti.spec.boundaries import Platen
 from rsmpm_ti.spec.loading_start import Affine, Press, Program, Ramp
 from rsmpm_ti.spec.mass_scaling import MIN_TRANSITS
 
@@ -77,10 +78,11 @@ def check_loading(scene) -> None:
                 edges = f"[{domain.lower[across]}, {domain.upper[across]}] m"
                 raise refuse(f"boundaries[{k}].span", span, f"an interval that meets the domain, {edges}")
         cells = (boundary.position - domain.lower[boundary.axis]) / domain.dx
-        if abs(cells - round(cells)) > 1e-3:
+        if abs(cells - round(cells)) > 1e-3 and not domain.turn:
             allowed = f"on a plane of grid nodes along axis {boundary.axis}"
             nearest = f"the nearest is {domain.lower[boundary.axis] + round(cells) * domain.dx:.9g} m"
             raise refuse(f"boundaries[{k}].position", boundary.position, allowed, nearest)
+    _check_turned(scene)
     _check_load_cell(scene)
     if scene.schedule.strain_end is not None or isinstance(loading.start, Affine):
         if loading.platens is None:
@@ -104,6 +106,23 @@ def check_loading(scene) -> None:
             least = f"at least {MIN_TRANSITS * loading.height / scene.wave_speed:.4g} s, 5 wave transits"
             raise refuse("start.time", loading.start.time, least)
     _check_sides(loading)
+
+
+def _check_turned(scene) -> None:
+    """A turned grid has no planes of nodes for what touches and leaves, rubs, or gives way."""
+    boundaries = scene.loading.boundaries
+    if not scene.domain.turn or not boundaries:
+        return
+    remedy = "set domain.turn = 0"
+    if len(boundaries) != 2 or scene.loading.platens is None:
+        raise refuse("domain.turn", scene.domain.turn, "0 but for two platens that face each other, alone", remedy)
+    for k, platen in enumerate(boundaries):
+        if not isinstance(platen, Platen) or platen.unilateral or platen.bonded:
+            raise refuse(f"boundaries[{k}]", platen, "a Platen with pulls = True on a turned grid", remedy)
+        if platen.held or platen.friction or platen.span is not None:
+            raise refuse(
+                f"boundaries[{k}]", platen, "one of a speed, smooth and without a span on a turned grid", remedy
+            )
 
 
 def _check_sides(loading) -> None:

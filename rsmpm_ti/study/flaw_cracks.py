@@ -11,6 +11,7 @@ from rsmpm_ti.analysis.load_curve import loading_curve
 from rsmpm_ti.analysis.neighbours import bands_of, neighbour_graph
 from rsmpm_ti.analysis.wing_cracks import crack_directions, leaving_angle
 from rsmpm_ti.errors import UnstableRun
+from rsmpm_ti.method.transfer import PicFlip
 from rsmpm_ti.records.snapshot import TENSION
 from rsmpm_ti.solver.advance import Drive
 from rsmpm_ti.solver.history import History
@@ -37,6 +38,9 @@ TIP_DISTANCE = 6e-3
 MIDDLE = 0.3
 """A crack began in the middle of the flaw if its place along the flaw is less than this fraction of half its length."""
 
+JITTERED = {"bodies.0.seeding": Jittered(), "transfer": PicFlip()}
+"""Both scenes of the paper, on a grid along their specimens."""
+
 LAST = 0.2
 """The load at onset is read from a line through this last fraction of the loading before it."""
 
@@ -48,8 +52,10 @@ def flawed_scene(*, specimen: str, angle: float, dx: float, paper: bool) -> Scen
     """
     common = {"dx": dx, "flaw_width": WIDTH, "time_scale": 16.0, "strain_end": STRAIN_END[specimen]}
     if specimen == "cube":
-        return load_scene("cube" if paper else "cube_lab", flaw_angle=angle, **common)
-    scene = load_scene("disc", flaw_angle=90.0 - angle, **common)
+        if not paper:
+            return load_scene("cube_lab", flaw_angle=angle, **common)
+        return load_scene("cube", flaw_angle=angle, turn=0.0, settings=JITTERED, **common)
+    scene = load_scene("disc", flaw_angle=90.0 - angle, settings=JITTERED, **common)
     if paper:
         return scene
     region = scene.bodies[0].region

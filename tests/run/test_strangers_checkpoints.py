@@ -27,6 +27,7 @@ from rsmpm_ti.scene import build, main, parser
 
 RUN = [
     *("cube", "--set", "dx=0.002", "--set", "flaw_width=0.006", "--set", "shape=Linear", "--set", "time_scale=16"),
+    *("--set", "turn=0"),  # platens that push have states of their nodes
     *("--set", "bodies.0.seeding=Lattice", "--set", "schedule.rows=60", "--frames", "1", "--no-movie"),
     *("--set", "output.vtu=1", "--threads", "1"),
 ]

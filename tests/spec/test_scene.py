@@ -177,15 +177,15 @@ def test_loading_that_says_too_little_or_too_much_is_refused(build, words):
 @pytest.mark.parametrize("name, value", [("stress", "20 MPa"), ("force", "1 MN/m")])
 def test_a_platen_with_a_speed_is_given_a_load_by_what_its_refusal_says(name, value):
     load = {f"loading.boundaries.1.{name}": value}
-    said = refusal(lambda: load_scene("cube", settings=load))
+    said = refusal(lambda: load_scene("intact", settings=load))
     assert f"platen.speed = -0.0025 is refused: it must be 0 beside a {name}" in said
     assert "set speed = 0" in said and "strain_end = none and t_end" in said
     still = {"loading.boundaries.1.speed": "0"}
-    assert "give t_end, and set strain_end = none" in refusal(lambda: load_scene("cube", settings=load | still))
-    scene = load_scene("cube", settings=load | still | {"strain_end": "none", "t_end": "1 ms"})
+    assert "give t_end, and set strain_end = none" in refusal(lambda: load_scene("intact", settings=load | still))
+    scene = load_scene("intact", settings=load | still | {"strain_end": "none", "t_end": "1 ms"})
     assert scene.loading.boundaries[1].held
     both = {"loading.boundaries.1.stress": "20 MPa", "loading.boundaries.1.force": "20 N/m"}
-    assert "set one of them to none" in refusal(lambda: load_scene("cube", settings=both | still))
+    assert "set one of them to none" in refusal(lambda: load_scene("intact", settings=both | still))
 
 
 def test_derived_numbers():

@@ -129,6 +129,7 @@ def test_scene_recorded_before_the_move_still_loads(tmp_path):
     for platen in recorded["loading"]["boundaries"]:
         platen |= {"pulls": False, "force": None, "stress": None}
     recorded["schedule"]["stop_after_drop"] = None
+    recorded["domain"]["turn"] = 0.0
     recorded["rock"]["after_failure"] |= {"dilation_angle": 0.0, "dilation_slip": 1e-3}
     recorded["rock"]["nonlocal_mean"] = recorded["rock"].pop("averaging")
     recorded["rock"]["nonlocal_mean"]["exclusion"] = recorded["rock"]["nonlocal_mean"].pop("shade")

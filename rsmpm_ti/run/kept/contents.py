@@ -150,9 +150,11 @@ class Contents:
     def _check_cells(self, x: np.ndarray, gone: np.ndarray) -> None:
         """Particles lie in the grid, sorted by the cells of their last sort, at most a row from where they were."""
         g, frame, shape = self.geometry, self.arrays["grid_frame"], self.scene.shape
-        local = (x - frame[:, 0]) * frame[:, 1]
+        local = g.coordinates_at(x, frame)
         # two cells beyond the domain and no further, to round-off
         inside = (local >= 0.9) & (local <= np.array(g.nodes) - 1.9)
+        if g.turned:
+            inside &= np.abs(x - np.array(g.centre)) * g.inv_dx <= np.array(g.reach) + 0.1
         need(inside.all(), "particles lie out of the grid")
         key, row_nodes = self.arrays["particle_key"].astype(np.int64), math.prod(g.nodes[1:])
         need((key >= 0).all() and (key < g.nodes[0] * row_nodes).all(), "particles lie in cells that are not there")

@@ -14,6 +14,7 @@ another kind; two bodies with a gap between them are tied in the same way, and a
 import itertools
 import math
 from dataclasses import dataclass, replace
+from typing import NamedTuple
 
 import numpy as np
 
@@ -56,6 +57,21 @@ class Tie:
 
 
 FREE = Tie(0.0, 0.0)
+
+
+class Turn(NamedTuple):
+    """How a turned grid lies: a node of it [m], [2], and the angle of its rows from +x [degrees]."""
+
+    node: np.ndarray
+    angle: float
+
+    def back(self, seeds: Seeds, slit: Slit) -> tuple[Seeds, Slit]:
+        """Both as the grid sees them, the node at the origin."""
+        c, s = math.cos(math.radians(self.angle)), math.sin(math.radians(self.angle))
+        rotation = np.array([[c, -s], [s, c]])
+        centre = tuple(float(a) for a in (np.array(slit.centre[:2]) - self.node) @ rotation)
+        turned = replace(slit, centre=centre, angle=slit.angle - self.angle)
+        return Seeds((seeds.x - self.node) @ rotation, seeds.volume), turned
 
 
 def slit_tie(seeds: Seeds, slit: Slit, shape, dx: float, origin: np.ndarray) -> Tie:
@@ -133,13 +149,14 @@ class _Strips:
         return 0.5 * float(moved @ (stiffness @ moved)), float(largest.max(initial=0.0))
 
 
-def check_cuts(body, shape, dx: float, origin: np.ndarray) -> None:
-    """Refuse a `Body` with a slit, or a box cut out of it like one, whose faces are tied."""
+def check_cuts(body, shape, dx: float, origin: np.ndarray, turn: Turn | None = None) -> None:
+    """Refuse a `Body` with a slit, or a box cut out of it like one, whose faces are tied; turn: of the grid."""
     for whole, part in cuts_of(body.region):
         if isinstance(part, Slit):
-            check_slit(body.region, part, body.seeding, shape, dx, origin)
+            check_slit(body.region, part, body.seeding, shape, dx, origin, turn=turn)
         elif isinstance(part, Box) and (slit := _as_slit(whole, part)) is not None:
-            check_slit(body.region, slit, body.seeding, shape, dx, origin, f"box.upper = {part.upper}: its width")
+            name = f"box.upper = {part.upper}: its width"
+            check_slit(body.region, slit, body.seeding, shape, dx, origin, name, turn)
 
 
 def _as_slit(whole, box: Box) -> Slit | None:
@@ -152,14 +169,23 @@ def _as_slit(whole, box: Box) -> Slit | None:
     return Slit(centre=centre, length=max(edges), width=min(edges), angle=0.0 if edges[0] >= edges[1] else 90.0)
 
 
-def check_slit(region, slit: Slit, seeding, shape, dx: float, origin: np.ndarray, name: str = "slit.width") -> None:
+def check_slit(
+    region,
+    slit: Slit,
+    seeding,
+    shape,
+    dx: float,
+    origin: np.ndarray,
+    name: str = "slit.width",
+    turn: Turn | None = None,
+) -> None:
     """Refuse a slit whose faces stay tied through shared nodes, naming a width that would do."""
-    tie = _tie_of_width(region, slit, slit.width, seeding, shape, dx, origin)
+    tie = _tie_of_width(region, slit, slit.width, seeding, shape, dx, origin, turn)
     if tie.parted:
         return
     for cells in np.arange(1.0, 6.01, 0.25):
         width = cells * dx
-        if width > slit.width and _tie_of_width(region, slit, width, seeding, shape, dx, origin).parted:
+        if width > slit.width and _tie_of_width(region, slit, width, seeding, shape, dx, origin, turn).parted:
             raise SceneError(
                 f"{name} = {slit.width:.6g} m is refused: at {slit.angle:g} degrees its faces share nodes, which "
                 f"pass on {100.0 * tie.passed:.2g} % of the stress (at most {100.0 * TIED_FRACTION:g} %) and load the "
@@ -169,13 +195,17 @@ def check_slit(region, slit: Slit, seeding, shape, dx: float, origin: np.ndarray
     raise SceneError(f"{name} = {slit.width:.6g} m is refused: no width up to 6 cells separates its faces")
 
 
-def _tie_of_width(region, slit: Slit, width: float, seeding, shape, dx: float, origin: np.ndarray) -> Tie:
+def _tie_of_width(region, slit: Slit, width: float, seeding, shape, dx: float, origin: np.ndarray, turn) -> Tie:
     """The tie if this slit had another width, in a patch of intact material around it."""
     trial = replace(slit, width=min(width, slit.length))
     lower, upper = (b[:2] for b in region.bounds())
     low, high = trial.bounds()
     patch = _Patch(lower=np.maximum(lower, low - 5 * dx), upper=np.minimum(upper, high + 5 * dx), slit=trial)
-    return slit_tie(seeding.fill(patch, origin[:2], dx), trial, shape, dx, origin)
+    seeds = seeding.fill(patch, origin[:2], dx)
+    if turn is not None:
+        seeds, trial = turn.back(seeds, trial)
+        return slit_tie(seeds, trial, shape, dx, np.zeros(2))
+    return slit_tie(seeds, trial, shape, dx, origin)
 
 
 class _Patch:

@@ -9,6 +9,7 @@ from rsmpm_ti import load_scene
 from rsmpm_ti.cases.case import Case, Outcome, Row, at_most, difference, relative
 from rsmpm_ti.cases.static_state import Static, static_state
 from rsmpm_ti.method.shape import Linear
+from rsmpm_ti.method.transfer import PicFlip
 from rsmpm_ti.spec.seeding import Lattice
 from rsmpm_ti.verify.elastic.closed_forms import CRACK_SHARE, cracked_disc, hondros, pressed_disc, williams
 
@@ -69,7 +70,7 @@ class _Pressed:
 def _press(dx: float, arc: float, seeding: Lattice, **flaw) -> _Pressed:
     scene = load_scene("disc", dx=dx, arc=math.degrees(arc), **flaw)
     bodies = tuple(replace(body, seeding=seeding) for body in scene.bodies)
-    static: Static = static_state(replace(scene, shape=Linear(), bodies=bodies))
+    static: Static = static_state(replace(scene, shape=Linear(), transfer=PicFlip(), bodies=bodies))
     snapshot = static.snapshot
     return _Pressed(dx, snapshot.x - R, snapshot.volume, static.sigma[:, :2, :2] / static.nominal)
 
