@@ -30,6 +30,7 @@ from rsmpm_ti.spec.ground.in_situ import InSitu
 from rsmpm_ti.spec.load_cell import Gauge, LoadCell
 from rsmpm_ti.spec.loader import load_scene
 from rsmpm_ti.spec.loading_start import AtRest
+from rsmpm_ti.spec.quasi_static.servo import Servo
 from rsmpm_ti.spec.regions import Box
 from rsmpm_ti.spec.scene import Body, Loading, Scene, Schedule
 from rsmpm_ti.spec.scene_json import from_plain, to_plain
@@ -80,7 +81,8 @@ def bases() -> list[Scene]:
     )  # fmt: skip
     stress, weight = InSitu(axis=2, surface=0.02, K0=0.5), Gravity(b=(0.0, 0.0, -1.0), ramp=1e-4)
     ground = replace(solid, loading=Loading(initial_stress=stress, force_field=weight, body_force=(0.0, 0.0, -9.81)))
-    return [plain, timed, lab, replace(lab, schedule=Schedule(t_end=1e-2)), solid, ground]
+    steered = replace(lab, schedule=Schedule(t_end=1e-2), loading=replace(lab.loading, servo=Servo()))
+    return [plain, timed, lab, steered, solid, ground]
 
 
 def at(thing, path: list):

@@ -101,5 +101,6 @@ def check_step(scene) -> None:
         given,
         schedule.dt if schedule.dt is not None else schedule.cfl,
         f"such that dt = {scene.dt:.4g} is in [{MIN_CFL * transit:.4g}, {limit:.4g}] s (dx/c_p = {transit:.4g} s)",
-        f"use cfl <= {limit / transit:.2f}",
+        f"use cfl <= {limit / transit:.2f} with shape = {type(scene.shape).__name__}, transfer = "
+        f"{type(scene.transfer).__name__} and order = {scene.order}",
     )

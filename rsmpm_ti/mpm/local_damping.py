@@ -15,6 +15,9 @@ that of a force that goes along with the platens.
 
 import taichi as ti
 
+UNDAMPED = -1
+"""In place of a slot of the ledger: a change of velocity that is no part of the motion."""
+
 
 @ti.func
 def platen_motion(sim: ti.template(), p):
@@ -42,9 +45,12 @@ def damped(sim: ti.template(), p, v_old, v, dv, slot):
             found[d] -= ti.select(relative > 0.0, change, -change)
         if ti.static(sim.particles.breaks):
             found = ti.select(sim.particles.mode[p] == 0, found, v)
+        if slot == UNDAMPED:
+            found = v
         mass, taken = sim.density * sim.particles.volume[p], found - v
         work = ti.cast(mass * taken.dot(motion), ti.f64)
         lost = -ti.cast(mass * taken.dot(0.5 * (found + v_old) - motion), ti.f64)
-        sim.ledger.body_work[slot] = sim.ledger.body_work[slot] + work
-        sim.ledger.damped[slot] = sim.ledger.damped[slot] + lost
+        booked = ti.max(slot, 0)
+        sim.ledger.body_work[booked] = sim.ledger.body_work[booked] + work
+        sim.ledger.damped[booked] = sim.ledger.damped[booked] + lost
     return found

@@ -12,6 +12,7 @@ import taichi as ti
 from rsmpm_ti.fields.state import Simulation
 from rsmpm_ti.fields.stencil import coordinates, gather, weights_and_gradients
 from rsmpm_ti.mpm.g2p import velocity_to_particle
+from rsmpm_ti.mpm.local_damping import UNDAMPED
 from rsmpm_ti.mpm.nodes import clear_nodes, update_nodes
 from rsmpm_ti.mpm.stepper import LOAD, scatter_all
 
@@ -26,7 +27,7 @@ def _kick(sim: ti.template(), share: float):
         base = sim.grid.base(xi, sim.shape)
         w, _ = weights_and_gradients(sim, xi, base, frame)
         dv_i = gather(sim, sim.nodes.f, base)
-        velocity_to_particle(sim, p, w, xi, base, frame, dv_i, dv_i)
+        velocity_to_particle(sim, p, w, xi, base, frame, dv_i, dv_i, UNDAMPED)
         particles.v[p] = share * particles.v[p]
         if ti.static(particles.affine):
             particles.C[p] = share * particles.C[p]

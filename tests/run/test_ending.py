@@ -10,7 +10,7 @@ from types import SimpleNamespace
 import pytest
 from small_scene import make, refusal
 
-from rsmpm_ti import UnstableRun, load_scene, simulate
+from rsmpm_ti import PicFlip, UnstableRun, load_scene, simulate
 from rsmpm_ti.analysis.load_curve import FilteredLoad
 from rsmpm_ti.errors import BrokenApart
 from rsmpm_ti.run.ending import burst, fallen
@@ -103,10 +103,10 @@ def test_what_has_not_burst_is_unstable(now, failures, created):
 
 def test_step_past_the_limit_makes_energy_and_bursts_nothing():
     """Breaking rock that is torn apart by its numbers: everything fails at once, and the load swings as it likes."""
-    scene = load_scene("cube", dx=2e-3, flaw_width=6e-3, strain_end=1e-3)
-    scene = replace(scene, schedule=replace(scene.schedule, rows=100))
+    scene = load_scene("cube", dx=2e-3, flaw_width=6e-3, turn=0.0, strain_end=1e-3)
+    scene = replace(scene, schedule=replace(scene.schedule, rows=100), transfer=PicFlip())
     object.__setattr__(scene.schedule, "cfl", 3.0)  # the scene would refuse it
-    with pytest.raises(UnstableRun, match="100 % of the energy that the run has held, came from nowhere"):
+    with pytest.raises(UnstableRun, match=r"\d\d+ % of the energy that the run has held, came from nowhere"):
         simulate(scene, threads=1)
 
 

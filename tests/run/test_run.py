@@ -77,8 +77,10 @@ def test_cracks_fragments_and_acoustic_events_hold_what_the_summary_says(run_fol
     assert sum(int(row["failures"]) for row in acoustic) == len(events)
     released = sum(float(event["released_energy_J"]) for event in events)
     assert sum(float(row["energy_J"]) for row in acoustic) == pytest.approx(released, rel=1e-6)
-    first = next(entry for entry in summary["initiation"] if entry["time_s"] == summary["first_failure_time_s"])
-    assert first["position_m"] == pytest.approx(summary["first_failure_position_m"])
+    # on a lattice both tips may crack at the same time
+    place = pytest.approx(summary["first_failure_position_m"])
+    (first,) = (entry for entry in summary["initiation"] if entry["position_m"] == place)
+    assert first["time_s"] == summary["first_failure_time_s"]
     # one is read between the rows around the failure, the other extrapolated from four rows before it
     assert first["stress_Pa"] == pytest.approx(summary["first_failure_stress_Pa"], rel=0.01)
     # wings are in tension: they open, and by less than the platens have moved
