@@ -37,7 +37,7 @@ def warnings_of(scene: Scene, numbers: dict, history: np.ndarray, events: EventT
         _sudden_start(scene),
         _no_stress(scene),
         _imbalance(numbers),
-        _motion(numbers, history),
+        _motion(scene, numbers, history),
         _between_peaks(numbers),
         numbers.get("numerical_fracture") or "",
     ]
@@ -99,7 +99,7 @@ def _kinetic_ratio(history: np.ndarray) -> np.ndarray:
     return history["energy_kinetic_J"] / np.where(stored > 0.0, stored, np.inf)
 
 
-def _motion(numbers: dict, history: np.ndarray) -> str:
+def _motion(scene: Scene, numbers: dict, history: np.ndarray) -> str:
     """A collapse that sets the specimen in motion is no quasi-static test any more, and knows of its mass."""
     share = numbers["kinetic_share_after"]
     if share is None or share <= MAX_KINETIC:
@@ -108,11 +108,12 @@ def _motion(numbers: dict, history: np.ndarray) -> str:
     over &= history["time_s"] >= numbers["first_failure_time_s"]
     strain, peak = float(history["axial_strain"][over.argmax()]), numbers["peak_filtered_strain"]
     where = "" if peak is None else ", after the peak" if abs(strain) >= abs(peak) else ", before the peak"
+    remedy = "" if scene.servo is not None or scene.loading.platens is None else "; loading.servo = Servo slows platens"
     at = f"from a strain of {strain:.3g} on{where}" if np.isfinite(strain) else "after the first failure"
     return (
         f"kinetic energy reaches {100.0 * share:.2g} % of the largest elastic energy, more than "
         f"{100.0 * MAX_KINETIC:g} % {at}: the test is not quasi-static there, and its load depends on the speed and "
-        f"the mass scaling"
+        f"the mass scaling{remedy}"
     )
 
 
