@@ -53,7 +53,8 @@ class Ledger:
         self.speed, self.mean_speed = ti.field(ti.f64, boundaries), ti.field(ti.f64, boundaries)
         self.body_work = ti.field(ti.f64, slots)
         self.viscous, self.released = ti.field(ti.f64, slots), ti.field(ti.f64, slots)
-        self.damped = ti.field(ti.f64, slots)  # by local damping
+        # by local damping, and by PIC's part of the transfer
+        self.damped, self.mixed = ti.field(ti.f64, slots), ti.field(ti.f64, slots)
 
 
 SCALARS = (

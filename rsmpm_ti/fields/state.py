@@ -70,6 +70,7 @@ class Simulation:
         self.size = len(self.stencil)  # nodes of a stencil
         self.band = scene.shape.crack_band * scene.domain.dx
         self.confinement = scene.loading.confinement
+        self.mixes = getattr(scene.transfer, "flip", 1.0) < 1.0  # PIC's part takes energy, which is booked
         self.local_damping = scene.local_damping
         if self.local_damping > 0.0:  # which boundaries the load presses between, along which axis
             lower, upper = scene.loading.ends

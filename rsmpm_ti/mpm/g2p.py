@@ -36,12 +36,14 @@ def spread(sim: ti.template(), w, r):
 def velocity_to_particle(sim: ti.template(), p, w, xi, base, frame, v_i: ti.template(), dv_i: ti.template(), slot):
     """New particle velocity, and affine matrix if carried, from node velocities [stencil, dim].
 
-    Returns v_pic - (v_new - v_old)/2, by which `body_work` counts.
+    Returns v_pic - (v_new - v_old)/2, by which `body_work` counts, and the energy per mass that a flip below 1 takes:
+    (v_flip - v).(v_old + v_new)/2, v being the mixed and v_flip the unmixed velocity.
     """
     particles = sim.particles
     v_pic, dv = interpolate(sim, w, v_i), interpolate(sim, w, dv_i)
     v_old = particles.v[p]
-    v_new = damped(sim, p, v_old, sim.transfer.to_particle(v_old, v_pic, dv), dv, slot)
+    mixed = sim.transfer.to_particle(v_old, v_pic, dv)
+    v_new = damped(sim, p, v_old, mixed, dv, slot)
     particles.v[p] = v_new
     if ti.static(particles.affine):
         B, D = ti.Matrix.zero(float, sim.dim, sim.dim), spread(sim, w, xi - base)
@@ -51,7 +53,7 @@ def velocity_to_particle(sim: ti.template(), p, w, xi, base, frame, v_i: ti.temp
         for d, e in ti.static(ti.ndrange(sim.dim, sim.dim)):
             B[d, e] *= frame[e, 1] / D[e]
         particles.C[p] = B
-    return v_pic - 0.5 * (v_new - v_old)
+    return v_pic - 0.5 * (v_new - v_old), 0.5 * (v_old + dv - mixed).dot(v_old + v_new)
 
 
 @ti.func
@@ -78,10 +80,16 @@ def book_body_work(sim: ti.template(), slot, work):
 
 
 @ti.func
+def book_mixing(sim: ti.template(), slot, lost):
+    if ti.static(sim.mixes):
+        sim.ledger.mixed[slot] = sim.ledger.mixed[slot] + lost
+
+
+@ti.func
 def nodes_to_particles(sim: ti.template(), start, stop, slot, what: ti.template(), dt, time):
     """v_p, x_p <- x_p + dt v_pic, and L = grad v, each if asked, at the weights of the step's start."""
     particles, nodes = sim.particles, sim.nodes
-    work = ti.cast(0.0, ti.f64)
+    work, lost = ti.cast(0.0, ti.f64), ti.cast(0.0, ti.f64)
     frame = sim.grid.start_frame()
     first = start
     while first < stop:
@@ -96,8 +104,9 @@ def nodes_to_particles(sim: ti.template(), start, stop, slot, what: ti.template(
             if ti.static(what.stress):
                 particles.L[p] = sim.grid.space_gradient(velocity_gradient(sim, w, dw, w_i))
             if ti.static(what.velocity):
-                v_middle = velocity_to_particle(sim, p, w, xi, base, frame, v_i, dv_i, slot)
+                v_middle, taken = velocity_to_particle(sim, p, w, xi, base, frame, v_i, dv_i, slot)
                 work += body_work(sim, p, v_middle, dt, time)
+                lost += ti.cast(taken * sim.density * particles.volume[p], ti.f64)
             if ti.static(what.position):
                 v_pic = interpolate(sim, w, v_i)
                 # not +=, which is an atomic add on a field
@@ -105,6 +114,7 @@ def nodes_to_particles(sim: ti.template(), start, stop, slot, what: ti.template(
         first = last
     if ti.static(what.velocity):
         book_body_work(sim, slot, work)
+        book_mixing(sim, slot, lost)
 
 
 @ti.func

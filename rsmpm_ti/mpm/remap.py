@@ -8,7 +8,7 @@ import taichi as ti
 
 from rsmpm_ti.fields.stencil import MAX_RUN, coordinates, gather, run_stop, scatter, weights_and_gradients
 from rsmpm_ti.mpm.contact import clear_gaps
-from rsmpm_ti.mpm.g2p import body_work, book_body_work, velocity_to_particle
+from rsmpm_ti.mpm.g2p import body_work, book_body_work, book_mixing, velocity_to_particle
 from rsmpm_ti.mpm.nodes import clear_node, over_nodes, velocity_of
 from rsmpm_ti.mpm.p2g import add_particle
 from rsmpm_ti.mpm.wall_nodes import extend, fold
@@ -19,7 +19,7 @@ def remap_span(sim: ti.template(), start, stop, slot, what: ti.template(), dt, t
     """New velocities for particles, and their momentum to v_remapped, in one go over each run."""
     nodes = sim.nodes
     frame = sim.grid.start_frame()
-    work = ti.cast(0.0, ti.f64)
+    work, lost = ti.cast(0.0, ti.f64), ti.cast(0.0, ti.f64)
     first = start
     while first < stop:
         last = run_stop(sim, first, stop)
@@ -31,13 +31,15 @@ def remap_span(sim: ti.template(), start, stop, slot, what: ti.template(), dt, t
             p = first + k
             xi = coordinates(sim, p, frame)
             w, dw = weights_and_gradients(sim, xi, base, frame)
-            v_middle = velocity_to_particle(sim, p, w, xi, base, frame, v_i, dv_i, slot)
+            v_middle, taken = velocity_to_particle(sim, p, w, xi, base, frame, v_i, dv_i, slot)
             work += body_work(sim, p, v_middle, dt, time)
+            lost += ti.cast(taken * sim.density * sim.particles.volume[p], ti.f64)
             add_particle(sim, p, xi, base, frame, w, dw, 0.0, m, mv, f)
         # mass is the same, and force comes from the new stress: the compiler leaves their sums out
         scatter(sim, nodes.v_remapped, base, mv)
         first = last
     book_body_work(sim, slot, work)
+    book_mixing(sim, slot, lost)
 
 
 @ti.func

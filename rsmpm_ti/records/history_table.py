@@ -59,7 +59,9 @@ HISTORY = Table(
             name="energy_elastic_J", unit="J", about="elastic energy stored", value=lambda view: view.survey.elastic
         ),
         Column(
-            name="energy_dissipated_J", unit="J", about="dissipated by failure and viscosity since the start",
+            name="energy_dissipated_J",
+            unit="J",
+            about="dissipated since the start by failure, viscosity, local damping and PIC's part of the transfer",
             value=lambda view: view.survey.dissipated,
         ),
         Column(

@@ -20,11 +20,17 @@ def damped_energy(sim) -> float:
     return float(sim.ledger.damped.to_numpy().sum(dtype=np.float64))
 
 
-def damping_said(scene, history: np.ndarray, energy_start: float, viscous: float) -> list[str]:
+def mixing_energy(sim) -> float:
+    """What PIC's part of the transfer has taken so far in a `Simulation` [J]."""
+    return float(sim.ledger.mixed.to_numpy().sum(dtype=np.float64))
+
+
+def damping_said(scene, history: np.ndarray, energy_start: float, viscous: float, mixed: float = 0.0) -> list[str]:
     """Sentences about numerical damping and artificial viscosity that took more than DAMPED_FRACTION of the energy that
     was put in: what the run started with, `energy_start` [J], and the most that was done on it.
 
-    history: the rows of a run; viscous: what the artificial viscosity dissipated [J].
+    history: the rows of a run; viscous, mixed: what the artificial viscosity dissipated and PIC's
+    part of the transfer took, both booked [J].
     """
     if not len(history):
         return []
@@ -32,7 +38,7 @@ def damping_said(scene, history: np.ndarray, energy_start: float, viscous: float
     most = float(np.max(put_in))
     present = history["energy_kinetic_J"] + history["energy_elastic_J"] + history["energy_dissipated_J"]
     rows = max(1, round(LAST * len(history)))
-    lost = float(np.mean((put_in - present)[-rows:]))
+    lost = float(np.mean((put_in - present)[-rows:])) + mixed
     said: list[str] = []
     if not most > 0.0:  # NaN too, where a run broke down
         return said

@@ -114,7 +114,8 @@ def _survey(sim: ti.template()):
         sim.report.work[None] += sim.ledger.work[b] + 0.5 * sim.ledger.latest[b]
     for slot in sim.ledger.viscous:
         sim.report.work[None] += sim.ledger.body_work[slot]
-        sim.report.dissipated[None] += sim.ledger.viscous[slot] + sim.ledger.released[slot] + sim.ledger.damped[slot]
+        sim.report.dissipated[None] += sim.ledger.viscous[slot] + sim.ledger.released[slot]
+        sim.report.dissipated[None] += sim.ledger.damped[slot] + sim.ledger.mixed[slot]
     for k in range(1):
         collect(sim, k)
 

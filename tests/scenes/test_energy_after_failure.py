@@ -12,10 +12,9 @@ WHERE = {"disc": "loading.time_scale", "disc_lab": "loading.time_scale"}
 
 
 MISSED = {
-    "disc": "flip = 0.99 damps the halves that part, which is told and not booked",
     "confined": "energy is lost where jacketed rock breaks; the cause is not found",
 }
-"""Scenes whose balance misses 0.5 % of the work, and closes within 1 %."""
+"""The scene whose balance misses 0.5 % of the work, and closes within 1 %."""
 
 
 @pytest.mark.validation
