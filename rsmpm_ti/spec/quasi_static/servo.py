@@ -4,7 +4,7 @@ Cracks grow at the speed of waves at most, and mass scaling makes waves slow. Pl
 press on rock whose cracks have had no time to grow: the load at the peak is too high by what is loaded in a wave
 transit of the specimen, and what breaks afterwards swings. So the servo looks at the energy that breaking rock
 dissipates in a transit, over the most elastic energy that there has been. Above `activity` the platens slow down, below
-half of it they are let on, by a factor SLOWER or FASTER in each transit, so that they send no wave themselves. In the
+half of it they are let on, by a factor SLOWER or FASTER in each transit; slowing sends a wave of up to rho c v. In the
 laboratory it is the rate of acoustic emission or the lateral strain that is held so: Terada, Yanagidani & Ehara (1984),
 3rd Conf. Acoustic Emission, 159; Hudson, Crouch & Fairhurst (1972), Eng. Geol. 6:155. The kinetic energy comes too
 late: it rises when a crack already runs. A specimen that holds less than SPENT of its largest elastic energy has
