@@ -23,9 +23,8 @@ class Geometry:
         self.turned, self.direction, self.pressed = domain.turn != 0.0, domain.direction, domain.pressed
         self.centre, self.middle = domain.middle, tuple(0.5 * (n - 1) for n in self.nodes)
         edges = (b - a for a, b in zip(domain.lower, domain.upper, strict=True))
-        self.reach = tuple(
-            0.5 * edge / domain.dx + beyond - 1.0 for edge in edges
-        )  # of particles from the centre [cells]
+        # of particles from the centre [cells]
+        self.reach = tuple(0.5 * edge / domain.dx + beyond - 1.0 for edge in edges)
         if self.turned:
             self.origin = tuple(c - n * domain.dx for c, n in zip(self.centre, self.middle, strict=True))
         lower, upper = [NO_WALL] * dim, [-NO_WALL] * dim

@@ -46,7 +46,7 @@ def damped(sim: ti.template(), p, v_old, v, dv, slot):
         if ti.static(sim.particles.breaks):
             found = ti.select(sim.particles.mode[p] == 0, found, v)
         if slot == UNDAMPED:
-            found = v
+            found = v  # and nothing is booked: all that follows is 0
         mass, taken = sim.density * sim.particles.volume[p], found - v
         work = ti.cast(mass * taken.dot(motion), ti.f64)
         lost = -ti.cast(mass * taken.dot(0.5 * (found + v_old) - motion), ti.f64)

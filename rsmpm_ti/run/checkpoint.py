@@ -258,11 +258,12 @@ def changed(arrays: dict[str, np.ndarray], identity: dict) -> bool:
 def check_end(arrays: dict[str, np.ndarray], scene) -> None:
     """Refuse a run that would end before the checkpoint from which it is to go on."""
     reached = float(arrays["clock_since"] + (arrays["clock_step"] - arrays["clock_first"]) * arrays["clock_dt"])
+    clock = ""
     if scene.servo is not None:
-        reached = float(arrays["clock_loaded"])
+        reached, clock = float(arrays["clock_loaded"]), " of platens at full speed"
     if scene.t_end < reached - float(arrays["clock_dt"]):  # an end is rounded up to whole steps
         name = "t_end" if scene.schedule.strain_end is None else "strain_end"
-        allowed = f"such that the run ends after t = {reached:.6g} s, to where the checkpoint has come"
+        allowed = f"such that the run ends after t = {reached:.6g} s{clock}, to where the checkpoint has come"
         raise refuse(f"schedule.{name}", getattr(scene.schedule, name), allowed, "start anew without --resume")
 
 

@@ -4,8 +4,9 @@ import os
 from dataclasses import replace
 
 import numpy as np
+import pytest
 
-from rsmpm_ti import Servo, load_scene, simulate
+from rsmpm_ti import SceneError, Servo, load_scene, simulate
 
 COARSE = {"dx": 2e-3, "flaw_width": 6e-3, "length": 4e-3}
 
@@ -28,3 +29,6 @@ def test_run_with_a_servo_goes_on_to_the_last_bit(tmp_path):
         np.testing.assert_array_equal(second.history[name], whole.history[name], err_msg=name)
     for name in ("least_pace", "local_damping_J", "steps"):
         assert second.summary[name] == whole.summary[name]
+    earlier = replace(scene, schedule=replace(scene.schedule, strain_end=5e-4))
+    with pytest.raises(SceneError, match="s of platens at full speed, to where the checkpoint has come"):
+        simulate(earlier, out=tmp_path / "run", threads=1, resume=True)

@@ -7,8 +7,8 @@ along it: on a plane of no extension it carries no more than tan(phi*) = sin(phi
 Mechanics: Selected Topics, 341; Vermeer 1990, Geotechnique 40:223, sec. 3). So the residual lies from N* p, with phi*
 for phi_r, to N_r p, as the mean over the last tenth of the strain.
 
-On a lattice all is symmetric, and two faults cross and hold each other: 81 MPa at p = 20 MPa, for 74 of one fault. Rock
-is not symmetric. Particles moved by a hundredth of their spacing choose one fault.
+On a lattice all is symmetric, and two faults cross and hold each other. Rock is not symmetric. Particles moved by a
+hundredth of their spacing choose one fault.
 """
 
 import math
