@@ -18,8 +18,8 @@ from rsmpm_ti.process import no_current_folder, without_ctrl_c
 from rsmpm_ti.records.files import complete
 from rsmpm_ti.spec.library.places import PACKAGE, available
 
-SOLVER = ("", "records", "rock", "method", "spec", "fields", "analysis", "failure", "mpm", "solver", "run")
-"""Rooms whose code a run's numbers may depend on."""
+SOLVER = "records rock method spec setups fields analysis failure mpm solver run".split()
+"""Rooms whose code a run's numbers may depend on, with the rooms in them, beside the modules that are in none."""
 
 
 @dataclass(frozen=True)
@@ -42,15 +42,20 @@ class Study:
     finish: Callable[[dict], Outcome]
 
 
+def code_behind(work: Callable) -> list[Path]:
+    """Files that numbers of `work` depend on: its own, the solver and the scenes."""
+    solver = [*PACKAGE.glob("*.py"), *(file for room in SOLVER for file in (PACKAGE / room).rglob("*.py"))]
+    return [Path(inspect.getfile(work)), *sorted(solver), *available().values()]
+
+
 @functools.cache
 def sources(work: Callable) -> str:
-    """Digest of the code that numbers of `work` depend on: its own file, the solver and the scenes.
+    """Digest of the code that numbers of `work` depend on.
 
-    So a kept result outlives no change of them: hours are lost by it now and then, but no picture is of another code.
+    So a kept result outlives no change of it: hours are lost by it now and then, but no picture is of another code.
     """
-    solver = [file for room in SOLVER for file in (PACKAGE / room).glob("*.py")]
     digest = hashlib.sha256()
-    for file in [Path(inspect.getfile(work)), *sorted(solver), *available().values()]:
+    for file in code_behind(work):
         digest.update(file.name.encode() + file.read_bytes())
     return digest.hexdigest()
 

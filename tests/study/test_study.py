@@ -90,6 +90,14 @@ def test_sources_are_those_of_the_work_the_solver_and_the_scenes(tmp_path, monke
     assert runs.sources.__wrapped__(squares) != before
 
 
+def test_rooms_within_rooms_are_of_the_solver_too():
+    """The law of broken rock lies two rooms deep."""
+    files = [file for file in runs.code_behind(squares) if file.is_relative_to(runs.PACKAGE)]
+    behind = {file.relative_to(runs.PACKAGE).as_posix() for file in files}
+    assert {"rock/broken/crack_return.py", "spec/quasi_static/servo.py", "setups/uniaxial.py", "units.py"} <= behind
+    assert not any(name.startswith(("paint/", "output/", "study/")) for name in behind)
+
+
 def test_kept_only_draws_what_there_is_and_refuses_where_there_is_nothing(tmp_path, monkeypatch, capsys):
     plan = [Run(name, squares, {"upto": 3}) for name in ("a", "b")]
     seen = []
