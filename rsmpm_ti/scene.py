@@ -15,7 +15,7 @@ from rsmpm_ti.rock.sheet.data_sheet import DataSheet
 from rsmpm_ti.spec.library.glance import glance
 from rsmpm_ti.spec.library.names import run_name
 from rsmpm_ti.spec.library.places import available, find, ships
-from rsmpm_ti.spec.library.rocks import described, list_rocks, load_sheet
+from rsmpm_ti.spec.library.rocks import described, for_scene, list_rocks, load_sheet
 from rsmpm_ti.spec.loader import about, load_scene
 from rsmpm_ti.spec.mass_scaling import estimate
 from rsmpm_ti.spec.review.memory import memory
@@ -112,7 +112,7 @@ def describe(scene: Scene, threads: int | None = None, file: Path | None = None,
     pictures, files, checkpoints = map(size, disk(scene, count))
     cores = threads or os.cpu_count() or 1
     seconds = solving_time(scene, count, cores)
-    rock_lines = [] if rock is None else described(rock, scene.domain.dx)
+    rock_lines = [] if rock is None else described(for_scene(rock, scene), scene.domain.dx)
     rows = (
         *([] if file is None else [("file", f"{file}")]),
         ("scene", scene.title),

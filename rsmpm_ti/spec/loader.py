@@ -19,7 +19,7 @@ from rsmpm_ti.errors import RockWarning, SceneError, refuse, short, shown
 from rsmpm_ti.rock.rock import Rock
 from rsmpm_ti.rock.sheet.data_sheet import DataSheet
 from rsmpm_ti.spec.library.places import find, in_place_of
-from rsmpm_ti.spec.library.rocks import load_sheet, with_rock
+from rsmpm_ti.spec.library.rocks import ends_early, load_sheet, with_rock
 from rsmpm_ti.spec.scene import Scene, Schedule, unchecked
 from rsmpm_ti.spec.scene_json import read_scene
 from rsmpm_ti.units import advice, percentage, quantity
@@ -68,8 +68,12 @@ def load_scene(
                 without = _call(function, path, (quick_keywords if quick else {}) | kept[0], kept[1])
                 _check_effect(key, scene, without, given)
     if given:
+        own = scene.rock
         with unchecked() if fields else contextlib.nullcontext():
             scene = with_rock(scene, given)
+        ends = {"strain_end", "t_end", "schedule.strain_end", "schedule.t_end"}
+        if not ends & {*overrides, *settings, *fields} and (said := ends_early(scene, own)):
+            warnings.warn(said, RockWarning, stacklevel=2)
     if not fields:
         return scene
     with _naming(settings | fields):

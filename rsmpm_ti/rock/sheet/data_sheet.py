@@ -62,7 +62,8 @@ class DataSheet:
     [J/m^2]: of a crack in tension; G_f_II: of cohesion lost in shear [J/m^2]; phi_r: friction angle of broken rock;
     averaging_length [m]. What may be left out: `DEFAULTS`.
     law: "lab" is rock with a fracture energy and directional cracks, 2D; "paper" is the paper's rule, which uses none
-    of the energies. softening: see `softening.py`. estimated: keys that the source does not give; sources: (key, text).
+    of the energies; by default a scene's rock keeps the rule of the scene, and is "lab" without one. softening: see
+    `softening.py`. estimated: keys that the source does not give; sources: (key, text).
 
     Raises SceneError for values that no rock has, and for strengths that contradict each other.
     """
@@ -82,7 +83,7 @@ class DataSheet:
     G_f_II: Annotated[FractureEnergy, Interval(ge=0.1, le=1e5)] | None = None
     phi_r: Annotated[Angle, Interval(ge=0.0, le=60.0)] | None = None
     averaging_length: Annotated[Length, Interval(ge=1e-5, le=0.1)] | None = None
-    law: Literal["lab", "paper"] = "lab"
+    law: Literal["lab", "paper"] | None = None
     softening: Literal["linear", "exponential"] = "linear"
     source: str = ""
     estimated: tuple[str, ...] = ()
@@ -223,7 +224,7 @@ class DataSheet:
         if ratio < GRIFFITH:
             known = f"open cracks alone make it {GRIFFITH:g} (Griffith 1924)"
             said.append(f"UCS over sigma_t is {ratio:.3g}, and {known}; is sigma_t that of direct tension?")
-        if self.law == "lab":
+        if self.law != "paper":
             said += self._energies_said(1e3 * self.length(dx))
         return [f"rock {self.name}: {sentence}" for sentence in said]
 
@@ -234,9 +235,10 @@ class DataSheet:
         if self.shear_energy < self.tension_energy:
             energies = f"G_f_II = {self.shear_energy:.4g} J/m2 is below G_f = {self.tension_energy:.4g} J/m2"
             said.append(f"{energies}; shear costs more")
-        for zone, mode, energy in ((tension, "tension", "G_f"), (shear, "shear", "G_f_II")):
+        in_shear = "G_f_II too small (granite under pressure: 1700 to 8600 J/m2, Moore & Lockner 1995)?"
+        for zone, mode, cause in ((tension, "tension", "G_f too small?"), (shear, "shear", in_shear)):
             if zone < SPAN * length:
                 mean = f"the mean over averaging_length = {length:.4g} mm spans {SPAN * length:.4g} mm"
-                remedy = f"use smaller cells and a smaller length, or is {energy} too small?"
+                remedy = f"use smaller cells and a smaller length, or is {cause}"
                 said.append(f"strength is lost over {zone:.3g} mm in {mode}, and {mean}: tips are robbed; {remedy}")
         return said

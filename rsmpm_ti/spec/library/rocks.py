@@ -10,11 +10,15 @@ from rsmpm_ti.errors import RockWarning, SceneError, short, shown
 from rsmpm_ti.rock.rock import Rock
 from rsmpm_ti.rock.sheet.data_sheet import DataSheet
 from rsmpm_ti.rock.sheet.reading import displayed, read_sheet
+from rsmpm_ti.rock.smeared_crack import Directional
 from rsmpm_ti.spec.library.places import HERE, shipped
 from rsmpm_ti.spec.scene import Scene
 
 SHOWN = ("density", "E", "nu", "UCS", "cohesion", "phi", "sigma_t", "BTS", "K_Ic", "G_f", "G_f_II")
 """Keys of a sheet that a listing has room for."""
+
+LATER = 1.1
+"""Times the strain from which on a rock is said to break later than the scene's own."""
 
 
 def rocks_in(folder: Path) -> dict[str, Path]:
@@ -60,26 +64,55 @@ def load_rock(name: str, *, dx: float | None = None) -> Rock:
     return Rock.from_sheet(load_sheet(name), dx=dx)
 
 
+def for_scene(sheet: DataSheet, scene: Scene) -> DataSheet:
+    """A sheet that says by which rule its rock breaks: where it leaves that open, by the scene's."""
+    if sheet.law is not None:
+        return sheet
+    return replace(sheet, law="lab" if isinstance(scene.rock.after_failure, Directional) else "paper")
+
+
 def with_rock(scene: Scene, rock: Rock | DataSheet) -> Scene:
     """A scene with another rock.
 
-    A `Rock` is taken as it is. A sheet leaves what it says nothing of as it was, which is the test's: plane stress,
-    viscosity, heterogeneity. It names itself in the title, and colours follow its tensile strength.
-    Raises SceneError where this scene cannot break such rock.
+    A `Rock` is taken as it is. A sheet leaves what it says nothing of as it was, which is the test's: the rule by which
+    rock breaks, plane stress, viscosity, heterogeneity. It names itself in the title, and colours follow its tensile
+    strength. Raises SceneError where this scene cannot break such rock.
     """
     if isinstance(rock, Rock):
         return replace(scene, rock=rock)
-    old = scene.rock
-    new = replace(Rock.from_sheet(rock, dx=scene.domain.dx), viscosity=old.viscosity, heterogeneity=old.heterogeneity)
+    old, sheet = scene.rock, for_scene(rock, scene)
+    new = Rock.from_sheet(sheet, dx=scene.domain.dx)
+    new = replace(new, viscosity=old.viscosity, heterogeneity=old.heterogeneity)
     if getattr(old.elasticity, "plane_stress", False):
         new = replace(new, elasticity=replace(new.elasticity, plane_stress=True))
+    if rock.law is None and sheet.law == "paper":
+        new = replace(new, after_failure=old.after_failure)
     output, strength = scene.output, getattr(old.criterion, "tensile_strength", None)
     if output.stress_limit is not None and strength:
-        output = replace(output, stress_limit=output.stress_limit * rock.tensile_strength / strength)
+        output = replace(output, stress_limit=output.stress_limit * sheet.tensile_strength / strength)
     try:
-        return replace(scene, rock=new, title=f"{scene.title}; {rock.name}"[:200], output=output)
+        return replace(scene, rock=new, title=f"{scene.title}; {sheet.name}"[:200], output=output)
     except SceneError as error:
-        raise SceneError(f"rock {short(rock.name)} in this scene: {error}") from None
+        raise SceneError(f"rock {short(sheet.name)} in this scene: {error}") from None
+
+
+def ends_early(scene: Scene, own: Rock) -> str:
+    """A sentence where a scene whose end was chosen for its own rock ends sooner for another; "" elsewhere.
+
+    Strains at failure go as sigma_t/E at a flaw by the paper's rule, and up to the peak as UCS/E.
+    """
+    name = "ucs" if isinstance(scene.rock.after_failure, Directional) else "tensile_strength"
+    strains = []
+    for rock in (own, scene.rock):
+        strength, modulus = getattr(rock.criterion, name, None), getattr(rock.elasticity, "E", None)
+        if not strength or not modulus:  # unbreakable, or laws of a scene's own
+            return ""
+        strains.append(strength / modulus)
+    end, ratio = scene.schedule.strain_end, strains[1] / strains[0]
+    if end is None or ratio <= LATER:
+        return ""
+    why = f"chosen for its own rock, and this one breaks at {ratio:.2g} times the strain"
+    return f"the scene ends at a strain of {end:g}, {why}: set strain_end={ratio * end:.2g} to load it as far"
 
 
 def described(sheet: DataSheet, dx: float | None) -> list[str]:
