@@ -83,7 +83,9 @@ def build(options: argparse.Namespace, rock: DataSheet | None = None) -> Scene:
         if not separator or not name.strip():
             raise SceneError(f"--set {shown(item)} is refused: write name=value")
         settings[name.strip()] = value.strip()
-    scene = load_scene(options.scene, quick=options.quick, settings=settings, rock=rock or options.rock)
+    scene = load_scene(
+        options.scene, quick=options.quick, settings=settings, rock=options.rock if rock is None else rock
+    )
     output = scene.output
     if options.frames is not None or options.quick:
         output = replace(output, frames=QUICK_FRAMES if options.frames is None else options.frames)
@@ -191,7 +193,7 @@ def main(arguments: list[str] | None = None) -> int:
         with warnings.catch_warnings():
             warnings.simplefilter("always", RockWarning)
             warnings.showwarning = lambda message, *_, **__: say(message)
-            rock = load_sheet(options.rock) if options.rock else None
+            rock = None if options.rock is None else load_sheet(options.rock)
             scene = build(options, rock)
             if not options.check:
                 return run(scene, options)

@@ -5,6 +5,7 @@ import dataclasses
 import difflib
 import importlib.util
 import inspect
+import os
 import traceback
 import types
 import typing
@@ -30,7 +31,7 @@ def load_scene(
     *,
     quick: bool = False,
     settings: dict[str, object] | None = None,
-    rock: Rock | DataSheet | str | None = None,
+    rock: Rock | DataSheet | str | os.PathLike | None = None,
     **overrides,
 ) -> Scene:
     """Build a scene. `overrides` are keywords of its function; `settings` are texts as --set gives them ("55 GPa"),
@@ -51,7 +52,9 @@ def load_scene(
     recorded = path.suffix == ".json"
     function, parameters, quick_keywords = (None, {}, {}) if recorded else _function(path)
     fields = _fields_of(settings, parameters)
-    given = load_sheet(rock) if isinstance(rock, str) else rock
+    given = load_sheet(rock) if isinstance(rock, str | os.PathLike) else rock
+    if not isinstance(given, Rock | DataSheet | None):
+        raise refuse("rock", rock, "a Rock, a DataSheet, a name of the shelf, or a path of a .toml file")
     with unchecked() if fields or given else contextlib.nullcontext():
         if recorded:
             if settings or overrides or quick:

@@ -45,7 +45,7 @@ DEFAULTS = {
     "sigma_t": ("0.9, 0.8 or 0.7 BTS", "Perras & Diederichs (2014), metamorphic, igneous, sedimentary", "0.5 to 1 BTS"),
     "G_f": ("K_Ic^2 (1 - nu^2)/E", "Irwin (1957), plane strain", "exact where the process zone is small"),
     "K_Ic": ("sigma_t/6.88, MPa and m", "Zhang (2002)", "a factor of 2 either way"),
-    "G_f_II": ("4.8 G_f", "K_IIc/K_Ic = 2.2: Al-Shayea (2005), limestone", "1 to 1000 G_f, more under pressure"),
+    "G_f_II": ("4.8 G_f", "K_IIc/K_Ic = 2.2: Al-Shayea (2005), limestone", "1 to 400 G_f, more under pressure"),
     "phi_r": ("30 degrees, at most phi", "Barton & Choubey (1977), basic friction", "25 to 35 degrees"),
     "averaging_length": ("1 mm, in a scene 2 cells or more", "a choice", "a grain to E' G_f/(4 sigma_t^2)"),
 }  # fmt: skip

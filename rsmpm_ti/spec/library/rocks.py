@@ -46,9 +46,10 @@ def find_rock(name: str) -> Path:
     )
 
 
-def load_sheet(name: str) -> DataSheet:
+def load_sheet(name: str | os.PathLike) -> DataSheet:
     """The data sheet of a rock of the shelf, or that in a .toml file. Raises SceneError."""
-    path = find_rock(os.fspath(name))
+    name = os.fspath(name)
+    path = find_rock(name)
     hidden = rocks_in(shipped()).get(path.stem)
     if not name.endswith(".toml") and hidden and os.path.realpath(hidden) != os.path.realpath(path):
         said = (
@@ -58,7 +59,7 @@ def load_sheet(name: str) -> DataSheet:
     return read_sheet(path)
 
 
-def load_rock(name: str, *, dx: float | None = None) -> Rock:
+def load_rock(name: str | os.PathLike, *, dx: float | None = None) -> Rock:
     """The `Rock` of the shelf, or of a .toml file, for a scene with cells of dx [m]; warns by RockWarning, raises
     SceneError."""
     return Rock.from_sheet(load_sheet(name), dx=dx)
@@ -111,7 +112,7 @@ def ends_early(scene: Scene, own: Rock) -> str:
     end, ratio = scene.schedule.strain_end, strains[1] / strains[0]
     if end is None or ratio <= LATER:
         return ""
-    why = f"chosen for its own rock, and this one breaks at {ratio:.2g} times the strain"
+    why = f"chosen for its own rock, and this one breaks at {ratio:.3g} times the strain"
     return f"the scene ends at a strain of {end:g}, {why}: set strain_end={ratio * end:.2g} to load it as far"
 
 
