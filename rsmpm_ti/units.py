@@ -93,12 +93,13 @@ def quantity(text: str, unit: Unit, dim: int = 2) -> float | None:
     registry = _registry()
     try:
         given = registry.Quantity(float(parts[1]), registry.parse_units(_product(parts[2])))
-    except (AttributeError, ValueError, ArithmeticError):  # pint: no such unit; float: two points
+        for name in _names(unit, dim):
+            # the units at the root tell also degrees from pure numbers, and rad/s from Hz: both have no dimension
+            if registry.get_root_units(given.units)[1] == registry.get_root_units(name)[1]:
+                return float(given.to(name).magnitude)
+    # pint: no such unit, k^0, a decibel, a millidegree Celsius; float: two points
+    except (AttributeError, KeyError, TypeError, ValueError, ArithmeticError):
         return None
-    for name in _names(unit, dim):
-        # the units at the root tell also degrees from pure numbers, and rad/s from Hz: both have no dimension
-        if registry.get_root_units(given.units)[1] == registry.get_root_units(name)[1]:
-            return float(given.to(name).magnitude)
     return None
 
 

@@ -60,6 +60,9 @@ def test_unit_that_the_dimension_of_a_scene_decides_is_no_other(capsys):
         ("1.5 MPa", "Pa*m^0.5"),
         ("1.5 MPa m", "Pa*m^0.5"),
         ("5 mm mm", "m"),
+        ("5 dBm2", "m"),
+        ("5 mdegC", "m"),
+        ("1 k-0", "m"),  # the constant of Boltzmann, of which pint loses the power 0
         ("1/2 m", "m"),
         ("1..2 m", "m"),
         ("m", "m"),

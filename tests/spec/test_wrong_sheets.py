@@ -6,8 +6,11 @@ from pathlib import Path
 
 import pytest
 from granite import GRANITE, text_of
+from hypothesis import given, settings
+from hypothesis import strategies as st
 
-from rsmpm_ti.rock.sheet.reading import MAX_BYTES
+from rsmpm_ti.errors import SceneError
+from rsmpm_ti.rock.sheet.reading import MAX_BYTES, read_sheet
 from rsmpm_ti.scene import main
 
 KEYS = sorted(GRANITE)
@@ -113,3 +116,23 @@ def test_what_is_no_sheet_is_refused_in_one_line(make, tmp_path, capsys):
     assert main(["cube", "--rock", str(path)]) == 2
     err = capsys.readouterr().err
     assert err.count("\n") == 1 and err.startswith(f"rsmpm_ti: {path}: ")
+
+
+PIECES = (
+    '"', "=", "[", "]", "\n", "1e9999", "-0", "nan", "inf", "true", "1979-05-27", "{a=1}", "[1,2]", '"55 GPa"', "MPa",
+    "√", "\u202e", "\x00", '"""', "'", "#", "0x10", "1_000", "9" * 5000,
+)  # fmt: skip
+
+
+@given(st.lists(st.tuples(st.integers(0, 150), st.integers(0, 6), st.sampled_from(PIECES)), min_size=1, max_size=3))
+@settings(max_examples=300, derandomize=True, deadline=None)
+def test_damaged_sheet_is_read_or_refused_in_one_line(tmp_path_factory, cuts):
+    text = text_of(GRANITE)
+    for start, length, piece in cuts:
+        text = text[:start] + piece + text[start + length :]
+    path = tmp_path_factory.getbasetemp() / "damaged.toml"
+    path.write_text(text, encoding="utf-8")
+    try:
+        read_sheet(path)
+    except SceneError as error:
+        assert str(error).startswith(f"{path}: ") and "\n" not in str(error) and len(str(error)) < 1200
