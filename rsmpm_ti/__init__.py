@@ -19,6 +19,7 @@ __version__ = "0.1.0"
 NEEDED = (
     "taichi numpy scipy matplotlib cmcrameri PIL fpng meshio rich lazy_loader pydantic annotated_types pint".split()
 )
+NEEDED += ["tomli"] if sys.version_info < (3, 11) else []
 """Modules without which no command works; they are those of pyproject.toml but for the movie's."""
 
 

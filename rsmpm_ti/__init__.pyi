@@ -27,6 +27,7 @@ from .rock.nonlocal_mean import Local as Local
 from .rock.nonlocal_mean import Nonlocal as Nonlocal
 from .rock.presets import lab_rock as lab_rock
 from .rock.rock import Rock as Rock
+from .rock.sheet.data_sheet import DataSheet as DataSheet
 from .rock.smeared_crack import Directional as Directional
 from .rock.softening import Brittle as Brittle
 from .rock.softening import ExponentialSoftening as ExponentialSoftening
@@ -44,6 +45,8 @@ from .spec.boundaries import Wall as Wall
 from .spec.domain import Domain as Domain
 from .spec.ground.gravity import Gravity as Gravity
 from .spec.ground.in_situ import InSitu as InSitu
+from .spec.library.rocks import load_rock as load_rock
+from .spec.library.rocks import load_sheet as load_sheet
 from .spec.load_cell import Gauge as Gauge
 from .spec.load_cell import LoadCell as LoadCell
 from .spec.loader import load_scene as load_scene
@@ -74,6 +77,7 @@ from .units import Length as Length
 from .units import MPa as MPa
 from .units import Pressure as Pressure
 from .units import Time as Time
+from .units import Toughness as Toughness
 from .units import Velocity as Velocity
 from .units import cm as cm
 from .units import kPa as kPa

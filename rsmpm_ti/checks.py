@@ -52,9 +52,9 @@ class Remedy:
     text: str
 
 
-def checked(owner: str) -> Callable[[type[Kind]], type[Kind]]:
+def checked(owner: str, *, recorded: bool = True) -> Callable[[type[Kind]], type[Kind]]:
     """Decorator of a keyword-only dataclass: its objects are checked when they are built. `owner` stands before the
-    dot in refusals."""
+    dot in refusals; recorded: whether a recorded scene may name it."""
 
     def decorate(kind):
         @functools.wraps(kind.__init__)
@@ -75,7 +75,7 @@ def checked(owner: str) -> Callable[[type[Kind]], type[Kind]]:
         kind.__pydantic_config__ = STRICT
         kind.__get_pydantic_core_schema__ = classmethod(_schema_with_type)
         kind.__get_pydantic_json_schema__ = classmethod(_json_schema_with_type)
-        if kind.__module__.startswith(OWN):
+        if recorded and kind.__module__.startswith(OWN):
             KNOWN[kind.__name__] = kind
         return kind
 

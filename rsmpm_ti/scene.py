@@ -11,9 +11,11 @@ from typing import TextIO, cast
 
 from rsmpm_ti.errors import RockWarning, SceneError, UnstableRun, shown
 from rsmpm_ti.process import Output, command, tell
+from rsmpm_ti.rock.sheet.data_sheet import DataSheet
 from rsmpm_ti.spec.library.glance import glance
 from rsmpm_ti.spec.library.names import run_name
 from rsmpm_ti.spec.library.places import available, find, ships
+from rsmpm_ti.spec.library.rocks import described, for_scene, list_rocks, load_sheet
 from rsmpm_ti.spec.loader import about, load_scene
 from rsmpm_ti.spec.mass_scaling import estimate
 from rsmpm_ti.spec.review.memory import memory
@@ -43,6 +45,7 @@ def parser() -> argparse.ArgumentParser:
     p.add_argument("--out", metavar="DIR", help="output folder (default renders/<scene>)")
     p.add_argument("--set", dest="settings", action="append", default=[], metavar="NAME=VALUE",
                    help="a keyword of the scene (flaw_length=15mm) or a field of it (schedule.cfl=0.3)")  # fmt: skip
+    p.add_argument("--rock", metavar="FILE|NAME", help="another rock: a data sheet (.toml), or a name of --rocks")
     p.add_argument("--quick", action="store_true", help="coarse grid and wider slit")
     p.add_argument("--elastic", action="store_true", help="switch failure off")
     p.add_argument(
@@ -66,20 +69,23 @@ def parser() -> argparse.ArgumentParser:
     p.add_argument("--resume", action="store_true", help="go on from the checkpoint in the output folder")
     p.add_argument("--checkpoint-every", type=float, default=60.0, metavar="S", help="seconds between checkpoints")
     p.add_argument("--list", action="store_true", help="list the scenes and their keywords")
+    p.add_argument("--rocks", action="store_true", help="list the rocks of the shelf")
     p.add_argument("--schema", action="store_true", help="print the JSON schema of a scene.json, for editors")
     p.add_argument("--check", action="store_true", help="validate, print what would be run, and stop")
     return p
 
 
-def build(options: argparse.Namespace) -> Scene:
-    """The scene that the options ask for."""
+def build(options: argparse.Namespace, rock: DataSheet | None = None) -> Scene:
+    """The scene that the options ask for; rock: in place of that which they name."""
     settings = {}
     for item in options.settings:
         name, separator, value = item.partition("=")
         if not separator or not name.strip():
             raise SceneError(f"--set {shown(item)} is refused: write name=value")
         settings[name.strip()] = value.strip()
-    scene = load_scene(options.scene, quick=options.quick, settings=settings)
+    scene = load_scene(
+        options.scene, quick=options.quick, settings=settings, rock=options.rock if rock is None else rock
+    )
     output = scene.output
     if options.frames is not None or options.quick:
         output = replace(output, frames=QUICK_FRAMES if options.frames is None else options.frames)
@@ -96,8 +102,9 @@ def build(options: argparse.Namespace) -> Scene:
     return scene.elastic() if options.elastic else scene
 
 
-def describe(scene: Scene, threads: int | None = None, file: Path | None = None) -> str:
-    """What would be run, as `--check` prints it; threads: all by default; file: which the scene is from."""
+def describe(scene: Scene, threads: int | None = None, file: Path | None = None, rock: DataSheet | None = None) -> str:
+    """What would be run, as `--check` prints it; threads: all by default; file: which the scene is from; rock: the
+    sheet of its rock."""
     from rsmpm_ti.run.forecast import disk, size, solving_time
 
     seeds = scene.particles()
@@ -107,9 +114,11 @@ def describe(scene: Scene, threads: int | None = None, file: Path | None = None)
     pictures, files, checkpoints = map(size, disk(scene, count))
     cores = threads or os.cpu_count() or 1
     seconds = solving_time(scene, count, cores)
+    rock_lines = [] if rock is None else described(for_scene(rock, scene), scene.domain.dx)
     rows = (
         *([] if file is None else [("file", f"{file}")]),
         ("scene", scene.title),
+        *zip(("rock", *len(rock_lines) * [""]), rock_lines, strict=False),
         ("particles", f"{count}"),
         *area(scene, seeds),
         ("grid nodes", f"{nodes} ({scene.domain.grid}), dx = {1e3 * scene.domain.dx:g} mm"),
@@ -173,6 +182,9 @@ def main(arguments: list[str] | None = None) -> int:
         if options.list:
             print(list_scenes())
             return 0
+        if options.rocks:
+            print(list_rocks())
+            return 0
         if options.schema:
             print(schema())
             return 0
@@ -181,13 +193,14 @@ def main(arguments: list[str] | None = None) -> int:
         with warnings.catch_warnings():
             warnings.simplefilter("always", RockWarning)
             warnings.showwarning = lambda message, *_, **__: say(message)
-            scene = build(options)
+            rock = None if options.rock is None else load_sheet(options.rock)
+            scene = build(options, rock)
             if not options.check:
                 return run(scene, options)
             from rsmpm_ti.run.forecast import disk_said
 
             settings_of(options).check(scene)
-            print(describe(scene, options.threads, find(options.scene)))
+            print(describe(scene, options.threads, find(options.scene), rock))
             seeds = scene.particles()
             count = sum(len(body.x) for body in seeds)
             for sentence in [*review(scene, seeds), *disk_said(scene, count, folder(options))]:

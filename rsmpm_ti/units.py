@@ -42,12 +42,18 @@ Pressure = Annotated[float, Unit("Pa")]
 ForceOrLineLoad = Annotated[float, Unit("N/m or N")]
 Density = Annotated[float, Unit("kg/m^3")]
 FractureEnergy = Annotated[float, Unit("J/m^2")]
+Toughness = Annotated[float, Unit("Pa*m^0.5")]
 
 QUANTITY = re.compile(
-    r"([-+]?[\d.]+(?:[eE][-+]?\d+)?)\s*([A-Za-zµμ°]{1,20}(?:\^?-?\d)?(?:[*/][A-Za-z]{1,20}(?:\^?-?\d)?){0,4})"
+    r"([-+]?[\d.]+(?:[eE][-+]?\d+)?)\s*"
+    r"([A-Za-zµμ°]{1,20}(?:\^?-?\d(?:\.5)?)?(?:(?:[*/]|\s)[A-Za-z]{1,20}(?:\^?-?\d(?:\.5)?)?){0,4})"
 )
-"""A number and its unit: `15mm`, `2.6 g/cm^3` or `2.6 g/cm3`. Nothing longer goes to pint, which would also compute
-9^9^9."""
+"""A number and its unit: `15mm`, `2.6 g/cm^3`, `2.6 g/cm3` or `2600 kg m^-3`. Nothing longer goes to pint, which would
+also compute 9^9^9."""
+
+ROOT = re.compile(r"[*\s]{0,3}(?:√|sqrt) ?\(?(mm|m)\)?")
+HALVES = re.compile(r"\^?\(?(-?[13])/2\)?")
+"""Other spellings of a power that is a half: `MPa sqrt(m)`, `MPa√m`, `MPa m^(1/2)`, `MN m^-3/2`."""
 
 POWER = re.compile(r"([A-Za-z])(-?\d)")
 """Where pint wants a sign for a power: m2 is m^2."""
@@ -72,6 +78,7 @@ COMMON = {
     "N": "kN MN N",
     "kg/m^3": "kg/m^3 g/cm^3",
     "J/m^2": "J/m^2 kJ/m^2 N/m N/mm",
+    "Pa*m^0.5": "MPa*m^0.5 kPa*m^0.5 MN/m^1.5 N/mm^1.5",
 }
 """Unit of a field -> what is typed for it. Another spelling in capitals and small letters is none of pint's, such as
 mpa, or one that no laboratory has, such as mPa and Mm."""
@@ -80,18 +87,19 @@ mpa, or one that no laboratory has, such as mPa and Mm."""
 def quantity(text: str, unit: Unit, dim: int = 2) -> float | None:
     """A text such as `15 mm` as a number in a unit; None where it is no such text, of another dimension, or a common
     unit but for capital letters."""
-    parts = QUANTITY.fullmatch(text.strip())
+    parts = QUANTITY.fullmatch(_spelled(text))
     if parts is None or _meant(parts[2], unit, dim):
         return None
     registry = _registry()
     try:
-        given = registry.Quantity(float(parts[1]), registry.parse_units(POWER.sub(r"\1^\2", parts[2])))
-    except (AttributeError, ValueError, ArithmeticError):  # pint: no such unit; float: two points
+        given = registry.Quantity(float(parts[1]), registry.parse_units(_product(parts[2])))
+        for name in _names(unit, dim):
+            # the units at the root tell also degrees from pure numbers, and rad/s from Hz: both have no dimension
+            if registry.get_root_units(given.units)[1] == registry.get_root_units(name)[1]:
+                return float(given.to(name).magnitude)
+    # pint: no such unit, k^0, a decibel, a millidegree Celsius; float: two points
+    except (AttributeError, KeyError, TypeError, ValueError, ArithmeticError):
         return None
-    for name in _names(unit, dim):
-        # the units at the root tell also degrees from pure numbers, and rad/s from Hz: both have no dimension
-        if registry.get_root_units(given.units)[1] == registry.get_root_units(name)[1]:
-            return float(given.to(name).magnitude)
     return None
 
 
@@ -104,7 +112,7 @@ def percentage(text: str) -> float | None:
 def advice(text: str, unit: Unit | None, dim: int = 2) -> str:
     """What to type in place of a number with a unit that a field does not take; "" for any other text. unit: of the
     field, None for a pure number."""
-    parts = QUANTITY.fullmatch(text.strip())
+    parts = QUANTITY.fullmatch(_spelled(text))
     if unit is None:
         return "it has no unit" if parts else ""
     if parts is None:
@@ -112,6 +120,17 @@ def advice(text: str, unit: Unit | None, dim: int = 2) -> str:
     if meant := _meant(parts[2], unit, dim):
         return f"capital letters count: did you mean '{parts[1]} {meant}'?"
     return f"its units are {', '.join(_common(unit, dim))}, and others of that dimension"
+
+
+def _spelled(text: str) -> str:
+    """A text with its roots as powers: `1.8 MPa√m` is `1.8 MPa*m^0.5`."""
+    text = ROOT.sub(r"*\1^0.5", text.strip().replace("·", "*").replace("**", "^"))
+    return HALVES.sub(lambda power: f"^{int(power[1]) / 2}", text)
+
+
+def _product(word: str) -> str:
+    """A unit as pint reads it: `kg m-3` is `kg*m^-3`."""
+    return POWER.sub(r"\1^\2", re.sub(r"\s", "*", word))
 
 
 def _names(unit: Unit, dim: int) -> list[str]:
@@ -126,7 +145,7 @@ def _common(unit: Unit, dim: int) -> list[str]:
 
 def _meant(word: str, unit: Unit, dim: int) -> str:
     """The common unit that a word would be but for capital letters; "" where it is one as it stands, or none."""
-    word = POWER.sub(r"\1^\2", word)
+    word = _product(word)
     common = _common(unit, dim)
     return "" if word in common else next((name for name in common if name.lower() == word.lower()), "")
 

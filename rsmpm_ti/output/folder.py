@@ -76,7 +76,7 @@ def unwritable(out: Path, error: Exception) -> SceneError:
 
 def record(scene: Scene, name: str, precision: str) -> bytes:
     """scene.json: what was run, by what, on what."""
-    from rsmpm_ti.spec.loader import machine
+    from rsmpm_ti.spec.review.machine import machine
     from rsmpm_ti.spec.scene_json import to_plain
 
     seeds = [getattr(body.seeding, "seed", None) for body in scene.bodies]

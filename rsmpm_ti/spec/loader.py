@@ -5,7 +5,7 @@ import dataclasses
 import difflib
 import importlib.util
 import inspect
-import sys
+import os
 import traceback
 import types
 import typing
@@ -17,19 +17,32 @@ from pydantic import PydanticUserError, TypeAdapter, ValidationError
 
 from rsmpm_ti.checks import KNOWN, STRICT, annotations, members, native, phrase, remedy, unit_of, within
 from rsmpm_ti.errors import RockWarning, SceneError, refuse, short, shown
+from rsmpm_ti.rock.rock import Rock
+from rsmpm_ti.rock.sheet.data_sheet import DataSheet
 from rsmpm_ti.spec.library.places import find, in_place_of
+from rsmpm_ti.spec.library.rocks import ends_early, load_sheet, with_rock
 from rsmpm_ti.spec.scene import Scene, Schedule, unchecked
 from rsmpm_ti.spec.scene_json import read_scene
 from rsmpm_ti.units import advice, percentage, quantity
 
 
-def load_scene(name: str, *, quick: bool = False, settings: dict[str, object] | None = None, **overrides) -> Scene:
+def load_scene(
+    name: str,
+    *,
+    quick: bool = False,
+    settings: dict[str, object] | None = None,
+    rock: Rock | DataSheet | str | os.PathLike | None = None,
+    **overrides,
+) -> Scene:
     """Build a scene. `overrides` are keywords of its function; `settings` are texts as --set gives them ("55 GPa"),
     numbers or objects (`Gimp()`), where a dotted name reaches a field of the built Scene, and so does a name of one of
     its fields, or of its schedule's (`t_end`), that is no keyword. `quick` first takes the file's QUICK keywords.
 
     All settings are put in before their sum is checked, so their order does not matter: two platens change their
     speeds, or `strain_end` becomes none and `t_end` a time, one after the other.
+
+    `rock` takes the place of the scene's own, before dotted names reach into it: a Rock, a DataSheet, a name of the
+    shelf or a path of a .toml file. A keyword that then changes nothing is refused.
 
     A .py scene is a program and is run; a .json scene is data and is not. Raises SceneError.
     """
@@ -39,7 +52,10 @@ def load_scene(name: str, *, quick: bool = False, settings: dict[str, object] | 
     recorded = path.suffix == ".json"
     function, parameters, quick_keywords = (None, {}, {}) if recorded else _function(path)
     fields = _fields_of(settings, parameters)
-    with unchecked() if fields else contextlib.nullcontext():
+    given = load_sheet(rock) if isinstance(rock, str | os.PathLike) else rock
+    if not isinstance(given, Rock | DataSheet | None):
+        raise refuse("rock", rock, "a Rock, a DataSheet, a name of the shelf, or a path of a .toml file")
+    with unchecked() if fields or given else contextlib.nullcontext():
         if recorded:
             if settings or overrides or quick:
                 raise SceneError("a recorded scene has no keywords; use dotted names, for example schedule.cfl=0.3")
@@ -47,10 +63,34 @@ def load_scene(name: str, *, quick: bool = False, settings: dict[str, object] | 
         else:
             with _naming(settings):
                 scene = _call(function, path, (quick_keywords if quick else {}) | overrides, settings)
+        if given:
+            for key in (*overrides, *settings):
+                if key not in parameters or parameters[key].default is inspect.Parameter.empty:
+                    continue
+                kept = [{k: v for k, v in values.items() if k != key} for values in (overrides, settings)]
+                without = _call(function, path, (quick_keywords if quick else {}) | kept[0], kept[1])
+                _check_effect(key, scene, without, given)
+    if given:
+        own = scene.rock
+        with unchecked() if fields else contextlib.nullcontext():
+            scene = with_rock(scene, given)
+        ends = {"strain_end", "t_end", "schedule.strain_end", "schedule.t_end"}
+        if not ends & {*overrides, *settings, *fields} and (said := ends_early(scene, own)):
+            warnings.warn(said, RockWarning, stacklevel=2)
     if not fields:
         return scene
     with _naming(settings | fields):
         return _with_fields(scene, Scene, {key: (key.split("."), value) for key, value in fields.items()}, scene.dim)
+
+
+def _check_effect(key: str, scene: Scene, without: Scene, rock: Rock | DataSheet) -> None:
+    """Refuse a keyword that belongs to the rock which another takes the place of. without: the scene without it."""
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", RockWarning)
+        idle = scene.rock != without.rock and with_rock(scene, rock) == with_rock(without, rock)
+    if idle:
+        remedy = "leave it out, put it into the rock's sheet, or set a field of the new rock (rock.after_failure...)"
+        raise SceneError(f"{short(key)} is of the scene's own rock, which another takes the place of; {remedy}")
 
 
 def _fields_of(settings: dict[str, object], parameters) -> dict[str, object]:
@@ -302,18 +342,3 @@ def _with_fields(owner, kind, changes: dict[str, tuple[list[str], object]], dim:
     except (TypeError, ValueError, AttributeError, ArithmeticError) as error:
         given = ", ".join(f"{short(key)}={short(str(value))}" for key, (_, value) in changes.items())
         raise SceneError(f"{given} is refused: {type(owner).__name__} cannot be built: {error}") from None
-
-
-def machine() -> dict[str, str]:
-    """Versions and machine, for the record; no host name."""
-    import importlib.metadata
-    import platform
-
-    packages = ("taichi", "numpy", "scipy", "meshio", "matplotlib", "imageio")
-    versions = {}
-    for name in packages:
-        try:
-            versions[name] = importlib.metadata.version(name)
-        except importlib.metadata.PackageNotFoundError:  # a movie is not written without imageio, but a run goes on
-            versions[name] = "not installed"
-    return {"python": sys.version.split()[0], **versions, "system": platform.system(), "machine": platform.machine()}

@@ -26,8 +26,9 @@ from rsmpm_ti.run import checkpoint
 from rsmpm_ti.run.attempts import Attempts
 from rsmpm_ti.run.settings import Settings
 from rsmpm_ti.scene import main
-from rsmpm_ti.spec.loader import load_scene, machine
+from rsmpm_ti.spec.loader import load_scene
 from rsmpm_ti.spec.review import memory
+from rsmpm_ti.spec.review.machine import machine
 from rsmpm_ti.spec.scene_json import read_scene, to_plain
 
 ROOT = Path(__file__).resolve().parents[2]

@@ -99,7 +99,7 @@ def command():
     """run(setting, ...) -> (the scene or None, message) of `cube --check`, in this process."""
     patch, accepted = pytest.MonkeyPatch(), []
 
-    def describe(scene, threads=None, file=None) -> str:
+    def describe(scene, threads=None, file=None, rock=None) -> str:
         check_runnable(scene)
         accepted.append(scene)
         return "runs"

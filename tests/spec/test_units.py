@@ -30,6 +30,10 @@ def cube(**settings):
         ("5 N/m", "J/m^2", 5.0),
         ("4 cm^2", "m^2 or m^3", 4e-4),
         ("5 mm", "m or m^2", 5e-3),
+        ("2600 kg m^-3", "kg/m^3", 2600.0),
+        ("1.5 MPa sqrt(m)", "Pa*m^0.5", 1.5e6),
+        ("1.5MPa√m", "Pa*m^0.5", 1.5e6),
+        ("1.5 MN/m^(3/2)", "Pa*m^0.5", 1.5e6),
     ],
 )
 def test_number_with_a_unit_is_that_number_in_si(text, unit, number):
@@ -53,6 +57,13 @@ def test_unit_that_the_dimension_of_a_scene_decides_is_no_other(capsys):
         ("1 Hz", "rad/s"),
         ("1e", "m"),  # the charge of an electron
         ("1 nosuch", "m"),
+        ("1.5 MPa", "Pa*m^0.5"),
+        ("1.5 MPa m", "Pa*m^0.5"),
+        ("5 mm mm", "m"),
+        ("5 dBm2", "m"),
+        ("5 mdegC", "m"),
+        ("1 k-0", "m"),  # the constant of Boltzmann, of which pint loses the power 0
+        ("1/2 m", "m"),
         ("1..2 m", "m"),
         ("m", "m"),
         ("1 m^9^9^9^9", "m"),  # a number of 10^8 digits, were it computed

@@ -1,12 +1,29 @@
-"""What this machine has left for a run: memory and disk, also where a container or the shell allows less."""
+"""What this machine is, for the record, and what it has left for a run: memory and disk, also where a container or the
+shell allows less."""
 
 import math
 import os
 import shutil
+import sys
 from pathlib import Path
 
 PROC = Path("/proc")
 CGROUPS = Path("/sys/fs/cgroup")
+
+
+def machine() -> dict[str, str]:
+    """Versions and machine, for the record; no host name."""
+    import importlib.metadata
+    import platform
+
+    packages = ("taichi", "numpy", "scipy", "meshio", "matplotlib", "imageio")
+    versions = {}
+    for name in packages:
+        try:
+            versions[name] = importlib.metadata.version(name)
+        except importlib.metadata.PackageNotFoundError:  # a movie is not written without imageio, but a run goes on
+            versions[name] = "not installed"
+    return {"python": sys.version.split()[0], **versions, "system": platform.system(), "machine": platform.machine()}
 
 
 def free_memory() -> float:
