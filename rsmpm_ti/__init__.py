@@ -19,7 +19,7 @@ __version__ = "0.1.0"
 NEEDED = (
     "taichi numpy scipy matplotlib cmcrameri PIL fpng meshio rich lazy_loader pydantic annotated_types pint".split()
 )
-"""Modules without which no command works; they are those of pyproject.toml but for the movie's."""
+"""Modules without which no command works; they are those of pyproject.toml but for those of movies and of outlines."""
 
 
 def _is_command() -> bool:

@@ -17,6 +17,7 @@ from pydantic import PydanticUserError, TypeAdapter, ValidationError
 
 from rsmpm_ti.checks import KNOWN, STRICT, annotations, members, native, phrase, remedy, unit_of, within
 from rsmpm_ti.errors import RockWarning, SceneError, refuse, short, shown
+from rsmpm_ti.spec.drawings.drawn_file import beside
 from rsmpm_ti.spec.library.places import find, in_place_of
 from rsmpm_ti.spec.scene import Scene, Schedule, unchecked
 from rsmpm_ti.spec.scene_json import read_scene
@@ -36,6 +37,11 @@ def load_scene(name: str, *, quick: bool = False, settings: dict[str, object] | 
     path, settings = find(name), dict(settings or {})
     if said := in_place_of(name, path):
         warnings.warn(said, RockWarning, stacklevel=2)
+    with beside(path.parent):
+        return _load_scene(path, quick, settings, overrides)
+
+
+def _load_scene(path: Path, quick: bool, settings: dict[str, object], overrides: dict[str, object]) -> Scene:
     recorded = path.suffix == ".json"
     function, parameters, quick_keywords = (None, {}, {}) if recorded else _function(path)
     fields = _fields_of(settings, parameters)
@@ -309,7 +315,7 @@ def machine() -> dict[str, str]:
     import importlib.metadata
     import platform
 
-    packages = ("taichi", "numpy", "scipy", "meshio", "matplotlib", "imageio")
+    packages = ("taichi", "numpy", "scipy", "shapely", "meshio", "pillow", "matplotlib", "imageio")
     versions = {}
     for name in packages:
         try:
