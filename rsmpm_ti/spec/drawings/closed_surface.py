@@ -9,7 +9,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-PAIRS = 2_000_000
+PAIRS = 200_000
 """Points and triangles that are held against each other at one time."""
 
 MAX_BINS, MAX_MEMBERS = 512, 20_000_000
@@ -18,10 +18,12 @@ MAX_BINS, MAX_MEMBERS = 512, 20_000_000
 
 class ClosedSurface(NamedTuple):
     """vertices [n, 3] in metres; triangles [m, 3], numbers of vertices. Columns of the x-y plane hold the triangles
-    above them: those of column c are `members[starts[c] : starts[c + 1]]`."""
+    above them: those of column c are `members[starts[c] : starts[c + 1]]`. shadows: lower and upper corner of each
+    triangle's in that plane, [4, m]."""
 
     vertices: np.ndarray
     triangles: np.ndarray
+    shadows: np.ndarray
     bins: np.ndarray
     starts: np.ndarray
     members: np.ndarray
@@ -45,7 +47,12 @@ class ClosedSurface(NamedTuple):
         counts = self.starts[column + 1] - self.starts[column]
         point = np.repeat(np.arange(len(x)), counts)
         nth = np.arange(len(point)) - np.repeat(np.cumsum(counts) - counts, counts)
-        corner = self.triangles[self.members[np.repeat(self.starts[column], counts) + nth]]
+        triangle = self.members[np.repeat(self.starts[column], counts) + nth]
+        near = np.ones(len(point), dtype=bool)
+        for d in (0, 1):
+            place = x[:, d][point]
+            near &= (place >= self.shadows[d][triangle]) & (place <= self.shadows[2 + d][triangle])
+        point, corner = point[near], self.triangles[triangle[near]]
         p, within = x[point], np.zeros(len(point), dtype=bool)
         for a, b in ((0, 1), (1, 2), (2, 0)):
             first, second = np.minimum(corner[:, a], corner[:, b]), np.maximum(corner[:, a], corner[:, b])
@@ -53,6 +60,7 @@ class ClosedSurface(NamedTuple):
             spans = np.flatnonzero((start[:, 1] > p[:, 1]) != (end[:, 1] > p[:, 1]))
             s, e, y = start[spans], end[spans], p[spans, 1]
             at = s[:, 0] + (y - s[:, 1]) / (e[:, 1] - s[:, 1]) * (e[:, 0] - s[:, 0])
+            at = np.clip(at, np.minimum(s[:, 0], e[:, 0]), np.maximum(s[:, 0], e[:, 0]))  # within the shadow
             within[spans] ^= p[spans, 0] < at
         hit = np.flatnonzero(within)
         a, b, c = (self.vertices[corner[hit, k]] for k in range(3))
@@ -75,10 +83,11 @@ def closed_surface(vertices: np.ndarray, triangles: np.ndarray) -> ClosedSurface
     """Of vertices [n, 3], all of which are used, and triangles [m, 3] without open edges (`open_edges`)."""
     low, high = vertices.min(axis=0), vertices.max(axis=0)
     corners = vertices[triangles][:, :, :2]
-    bins = np.full(2, int(np.clip(np.sqrt(len(triangles)), 1, MAX_BINS)))
+    shadows = np.concatenate([corners.min(axis=1).T, corners.max(axis=1).T])
+    bins = np.full(2, int(np.clip(2.0 * np.sqrt(len(triangles)), 1, MAX_BINS)))
     while True:
-        first = _cells(corners.min(axis=1), low, high, bins)
-        count = _cells(corners.max(axis=1), low, high, bins) - first + 1
+        first = _cells(shadows[:2].T, low, high, bins)
+        count = _cells(shadows[2:].T, low, high, bins) - first + 1
         each = count.prod(axis=1)
         if each.sum() <= MAX_MEMBERS or bins[0] == 1:
             break
@@ -89,7 +98,7 @@ def closed_surface(vertices: np.ndarray, triangles: np.ndarray) -> ClosedSurface
     column = _column(first[triangle] + np.stack([nth // height, nth % height], axis=1), bins)
     order = np.argsort(column, kind="stable")
     starts = np.searchsorted(column[order], np.arange(bins.prod() + 1))
-    return ClosedSurface(vertices, triangles, bins, starts, triangle[order])
+    return ClosedSurface(vertices, triangles, shadows, bins, starts, triangle[order])
 
 
 def open_edges(triangles: np.ndarray) -> int:

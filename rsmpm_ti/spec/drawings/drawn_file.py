@@ -17,7 +17,7 @@ from annotated_types import Len
 from pydantic import BeforeValidator
 
 from rsmpm_ti.checks import Remedy
-from rsmpm_ti.errors import reason, refuse
+from rsmpm_ti.errors import reason, refuse, shown
 
 
 def _as_text(path):
@@ -63,7 +63,7 @@ def read(field: str, name: str, sha256: str | None, most: int) -> Drawn:
     digest = hashlib.sha256(data).hexdigest()
     if sha256 not in (None, digest):
         owner = field.rpartition(".")[0]
-        known = f"the file of which {owner}.sha256 = {sha256!r} is known"
+        known = f"the file of which {owner}.sha256 = {shown(sha256)} is known"
         raise refuse(field, name, known, f"this one has {digest}; set sha256 to none to take it all the same")
     return Drawn(data, digest)
 

@@ -21,7 +21,7 @@ MAX_GREY = 65535
 OPAQUE = 128
 """Of 255, from which on a pixel is there."""
 
-Grey = Annotated[int, Interval(ge=0, le=MAX_GREY)]
+Grey = Annotated[float, Interval(ge=0.0, le=MAX_GREY)]
 
 
 @checked("mask")
@@ -51,7 +51,7 @@ class Mask:
         if not solid.any():
             held = f"greys of the image, {level.min():g} to {level.max():g}, lowest first"
             raise refuse("mask.greys", self.greys, held, "no pixel is of these")
-        self.__dict__ |= {"sha256": file.sha256, "drawn": solid[::-1]}
+        self.__dict__.update({"sha256": file.sha256, "drawn": solid[::-1]})
 
     @property
     def _solid(self) -> np.ndarray:

@@ -21,7 +21,7 @@ FLAT = 1e-9
 @checked("mesh")
 @dataclass(frozen=True, kw_only=True)
 class Mesh:
-    """The body of a mesh that meshio reads: .msh of gmsh, .stl, .vtu, .ply or .obj.
+    """The body of a mesh that meshio reads: .msh of gmsh, .stl, .vtu or .obj.
 
     Triangles and quads in the x-y plane are a region in 2D, what any of them covers. Tetrahedra are one in 3D, and so
     are triangles in space that close a surface in. Of curved cells the corners count. scale: metres per unit of the
@@ -50,7 +50,7 @@ class Mesh:
             raise refuse("mesh.scale", self.scale, f"such that {size:g} m, the size of the mesh, is one of a body")
         moved = Cells(vertices, cells.by_kind)
         drawn = _plane_area(self.file, moved) if flat else _volume(self.file, moved)
-        self.__dict__ |= {"sha256": file.sha256, "drawn": drawn}
+        self.__dict__.update({"sha256": file.sha256, "drawn": drawn})
 
     @property
     def _inside(self) -> PlaneArea | ClosedSurface:

@@ -12,7 +12,7 @@ from rsmpm_ti.errors import SceneError, reason, refuse
 
 MAX_BYTES, MAX_CELLS = 64 * 2**20, 500_000
 
-FORMATS = {".msh": "gmsh", ".stl": "stl", ".vtu": "vtu", ".ply": "ply", ".obj": "obj"}
+FORMATS = {".msh": "gmsh", ".stl": "stl", ".vtu": "vtu", ".obj": "obj"}
 """That are one file and nothing else: others may name further files, which would be read too."""
 
 CORNERS = {"triangle": 3, "quad": 4, "tetra": 4}
@@ -38,7 +38,8 @@ def read_cells(name: str, data: bytes, group: str | None) -> Cells:
         _check_vtu(name, data)
     try:
         mesh = _read(data, suffix)
-        vertices = np.asarray(mesh.points, dtype=float)
+        with np.errstate(all="ignore"):  # of numbers that are none, which are refused below
+            vertices = np.asarray(mesh.points, dtype=float)
         if vertices.ndim != 2 or vertices.shape[1] not in (2, 3):
             raise ValueError(f"its points are {list(vertices.shape)}")
         blocks = [(block.type.rstrip("0123456789"), np.asarray(block.data)) for block in mesh.cells]
@@ -76,7 +77,7 @@ def _read(data: bytes, suffix: str):
         copy = Path(folder) / f"mesh{suffix}"
         copy.write_bytes(data)
         quiet = io.StringIO()  # its warnings would come once for every copy of a scene
-        with contextlib.redirect_stdout(quiet), contextlib.redirect_stderr(quiet):
+        with np.errstate(all="ignore"), contextlib.redirect_stdout(quiet), contextlib.redirect_stderr(quiet):
             return getattr(meshio, FORMATS[suffix]).read(str(copy))
 
 
