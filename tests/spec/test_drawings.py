@@ -148,7 +148,7 @@ def test_image_that_is_none_is_refused(tmp_path, monkeypatch):
     refused(mask(tmp_path), "mask.image", "regular file")
     refused(mask("a\x00b"), "mask.image")
     refused(mask(PLATE), "mask.image", "an image, one of PNG")
-    refused(mask(SECTION, greys=(200, 210)), "mask.greys = (200, 210)", "60 to 255")
+    refused(mask(SECTION, greys=(200, 210)), "mask.greys = (200.0, 210.0)", "60 to 255")
     data = Path(SECTION).read_bytes()
     for damaged in (b"", data[:20], data[:-60], data[:60] + b"xxxx" + data[64:]):
         (tmp_path / "broken.png").write_bytes(damaged)

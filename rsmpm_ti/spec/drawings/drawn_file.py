@@ -64,7 +64,7 @@ def read(field: str, name: str, sha256: str | None, most: int) -> Drawn:
     if sha256 not in (None, digest):
         owner = field.rpartition(".")[0]
         known = f"the file of which {owner}.sha256 = {shown(sha256)} is known"
-        raise refuse(field, name, known, f"this one has {digest}; set sha256 to none to take it all the same")
+        raise refuse(field, name, known, f"this one has {digest}; without a sha256 it would be taken")
     return Drawn(data, digest)
 
 
@@ -81,7 +81,8 @@ def _bytes(path: Path, most: int) -> bytes | None:
         return None
     descriptor = os.open(path, os.O_RDONLY | getattr(os, "O_NONBLOCK", 0) | getattr(os, "O_BINARY", 0))
     with open(descriptor, "rb") as file:
-        if not stat.S_ISREG(os.fstat(descriptor).st_mode):
+        there = os.fstat(descriptor)
+        if not stat.S_ISREG(there.st_mode) or there.st_size > most:
             return None
         data = file.read(most + 1)
     return data if len(data) <= most else None

@@ -12,7 +12,7 @@ from rsmpm_ti.errors import refuse
 from rsmpm_ti.spec.drawings.closed_surface import ClosedSurface, closed_surface, open_edges
 from rsmpm_ti.spec.drawings.drawn_file import FileName, read
 from rsmpm_ti.spec.drawings.mesh_file import MAX_BYTES, Cells, read_cells
-from rsmpm_ti.spec.drawings.plane_area import PlaneArea
+from rsmpm_ti.spec.drawings.plane_area import PlaneArea, shapely
 
 FLAT = 1e-9
 """Largest height of a flat mesh, over its size."""
@@ -75,13 +75,12 @@ class Mesh:
 
 
 def _plane_area(name: str, cells: Cells) -> PlaneArea:
-    import shapely  # a tenth of a second, for scenes with a drawing
-
-    drawn = np.concatenate([shapely.polygons(cells.vertices[corners][:, :, :2]) for corners in cells.by_kind.values()])
-    drawn = drawn[shapely.area(drawn) > 0.0]
-    if not len(drawn) or not shapely.is_valid(drawn).all():
+    rings = [cells.vertices[corners][:, :, :2] for corners in cells.by_kind.values()]
+    drawn = np.concatenate([shapely().polygons(ring) for ring in rings])
+    drawn = drawn[shapely().area(drawn) > 0.0]
+    if not len(drawn) or not shapely().is_valid(drawn).all():
         raise refuse("mesh.file", name, "a mesh of cells that have an area and cross themselves nowhere")
-    return PlaneArea(shapely.union_all(drawn))
+    return PlaneArea(shapely().union_all(drawn))
 
 
 def _volume(name: str, cells: Cells) -> ClosedSurface:

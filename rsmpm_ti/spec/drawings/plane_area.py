@@ -4,6 +4,17 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from rsmpm_ti.errors import SceneError
+
+
+def shapely():
+    """The library, loaded on first use as it takes a tenth of a second. Raises SceneError where it is missing."""
+    try:
+        import shapely
+    except ImportError as error:
+        raise SceneError(f"an outline or a flat mesh needs shapely, `pip install shapely`: {error}") from None
+    return shapely
+
 
 @dataclass(frozen=True)
 class PlaneArea:
@@ -13,10 +24,8 @@ class PlaneArea:
 
     def contains(self, x: np.ndarray) -> np.ndarray:
         """Which points lie inside, edges left out; x [n, 2] -> bool [n]."""
-        import shapely  # a tenth of a second, for scenes with a drawing
-
-        shapely.prepare(self.geometry)
-        return shapely.contains_xy(self.geometry, x[:, 0], x[:, 1])
+        shapely().prepare(self.geometry)
+        return shapely().contains_xy(self.geometry, x[:, 0], x[:, 1])
 
     def bounds(self) -> tuple[np.ndarray, np.ndarray]:
         low_x, low_y, high_x, high_y = self.geometry.bounds  # type: ignore[attr-defined]
@@ -30,6 +39,4 @@ class PlaneArea:
     @property
     def hull(self) -> np.ndarray:
         """Corners of the convex hull [m], [n, 2]."""
-        import shapely
-
-        return shapely.get_coordinates(shapely.convex_hull(self.geometry))
+        return shapely().get_coordinates(shapely().convex_hull(self.geometry))

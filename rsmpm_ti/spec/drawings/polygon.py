@@ -9,7 +9,7 @@ from pydantic import BeforeValidator
 
 from rsmpm_ti.checks import MIN_POSITIVE, Coordinate, checked, native
 from rsmpm_ti.errors import refuse
-from rsmpm_ti.spec.drawings.plane_area import PlaneArea
+from rsmpm_ti.spec.drawings.plane_area import PlaneArea, shapely
 
 MAX_CORNERS, MAX_HOLES = 10_000, 1000
 
@@ -72,10 +72,8 @@ class Polygon:
 
 
 def _drawn(field: str, points: tuple, holes: tuple, allowed: str) -> PlaneArea:
-    import shapely  # a tenth of a second, for scenes with a drawing
-
-    area = shapely.Polygon(points, holes)
+    area = shapely().Polygon(points, holes)
     if not area.is_valid or not area.area >= MIN_POSITIVE**2:
-        why = shapely.is_valid_reason(area).replace("[", " at (").replace("]", ") m")
+        why = shapely().is_valid_reason(area).replace("[", " at (").replace("]", ") m")
         raise refuse(field, holes or points, allowed, "" if area.is_valid else why)
     return PlaneArea(area)
