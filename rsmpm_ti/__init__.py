@@ -20,7 +20,7 @@ NEEDED = (
     "taichi numpy scipy matplotlib cmcrameri PIL fpng meshio rich lazy_loader pydantic annotated_types pint".split()
 )
 NEEDED += ["tomli"] if sys.version_info < (3, 11) else []
-"""Modules without which no command works; they are those of pyproject.toml but for the movie's."""
+"""Modules without which no command works; they are those of pyproject.toml but for those of movies and of outlines."""
 
 
 def _is_command() -> bool:

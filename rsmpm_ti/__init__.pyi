@@ -43,6 +43,9 @@ from .spec.boundaries import Fixed as Fixed
 from .spec.boundaries import Platen as Platen
 from .spec.boundaries import Wall as Wall
 from .spec.domain import Domain as Domain
+from .spec.drawings.mask import Mask as Mask
+from .spec.drawings.mesh import Mesh as Mesh
+from .spec.drawings.polygon import Polygon as Polygon
 from .spec.ground.gravity import Gravity as Gravity
 from .spec.ground.in_situ import InSitu as InSitu
 from .spec.library.rocks import load_rock as load_rock
@@ -59,7 +62,9 @@ from .spec.quasi_static.servo import Servo as Servo
 from .spec.regions import Box as Box
 from .spec.regions import Difference as Difference
 from .spec.regions import Disc as Disc
+from .spec.regions import Segments as Segments
 from .spec.regions import Slit as Slit
+from .spec.regions import Turned as Turned
 from .spec.regions import Union as Union
 from .spec.scene import Body as Body
 from .spec.scene import Loading as Loading

@@ -17,7 +17,7 @@ from pydantic import ConfigDict, TypeAdapter, ValidationError
 from pydantic_core import ArgsKwargs, PydanticCustomError, core_schema
 
 from rsmpm_ti.errors import SceneError, refuse, shown
-from rsmpm_ti.units import LEAST_PRESSURE, Unit
+from rsmpm_ti.units import LEAST_PRESSURE, Length, Unit
 
 MIN_POSITIVE, MAX_SIZE = 1e-12, 1e18
 """Of what must be positive, in SI units: far beyond any specimen, and squares and ratios of such numbers are finite."""
@@ -27,6 +27,13 @@ NotNegative = Interval(ge=0.0, le=MAX_SIZE)
 Finite = Interval(ge=-MAX_SIZE, le=MAX_SIZE)
 Seed = typing.Annotated[int, Interval(ge=0, le=2**63 - 1)]
 """A random seed that every record can hold."""
+
+MAX_COORDINATE = 1e9
+"""Largest coordinate and length [m]: beyond it a specimen is a mistake, and squares and node numbers overflow."""
+
+Coordinate = typing.Annotated[Length, Interval(ge=-MAX_COORDINATE, le=MAX_COORDINATE)]
+Position = typing.Annotated[tuple[Coordinate, ...], Len(2, 3)]
+Size = typing.Annotated[Length, Interval(ge=MIN_POSITIVE, le=MAX_COORDINATE)]
 
 STRICT = ConfigDict(strict=True, extra="forbid", allow_inf_nan=False)
 """No text is a number, no unknown keyword passes; an integer will do for a number, a bool will not."""

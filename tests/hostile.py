@@ -15,6 +15,7 @@ import signal
 import time
 import typing
 from dataclasses import replace
+from pathlib import Path
 from types import SimpleNamespace
 
 import numpy as np
@@ -54,13 +55,18 @@ THINGS = (
     np.float32(1.0), np.int64(3), np.array([0.0, 1.0]), object(), SimpleNamespace(), float, Hooke, math.sin, range(3),
 )  # fmt: skip
 
+DRAWINGS = Path(__file__).parent / "spec" / "drawings"
+
 GIVEN = {
     "angle": 30.0, "axis": 1, "centre": (0.025, 0.05), "dx": 2e-3, "length": 0.02, "lower": (0.01, 0.02), "nu": 0.2,
     "position": 0.1, "radius": 0.01, "side": "upper", "speed": -2.5e-3, "time": 2e-3, "title": "a", "width": 6e-3,
     "upper": (0.04, 0.08), "E": 17e9, "density": 2600.0, "cohesion": 6e6, "friction_angle": 40.0, "shape": 6.0,
     "tensile_strength": 2e6, "reference_volume": 1e-5, "G_f_I": 5.0, "G_f_II": 24.0, "tension_limit": 1.0,
     "compression_limit": 1e9, "times": (1e-3, 2e-3), "factors": (1.0, 0.5),
-    "parts": (Box(lower=(0.01, 0.02), upper=(0.04, 0.08)),),
+    "parts": (Box(lower=(0.01, 0.02), upper=(0.04, 0.08)),), "region": Box(lower=(0.015, 0.03), upper=(0.035, 0.07)),
+    "points": ((0.01, 0.02), (0.04, 0.02), (0.025, 0.08)), "traces": ((0.02, 0.04, 0.03, 0.06, 6e-3),),
+    "image": str(DRAWINGS / "section.png"), "mm_per_pixel": 1.0, "greys": (0, 100),
+    "file": str(DRAWINGS / "plate.msh"),
 }  # fmt: skip
 """A good value for every field without a default, by its name."""
 

@@ -4,6 +4,7 @@ import importlib
 import re
 import runpy
 import shlex
+import shutil
 from importlib.util import find_spec
 from pathlib import Path
 
@@ -247,6 +248,17 @@ def test_page_of_scenes_runs_and_writes_one(folder):
     (folder / "mine.py").write_text(scene_file, encoding="utf-8")
     shipped = load_scene("intact")
     assert load_scene("mine.py") == shipped
+
+
+def test_page_of_drawings_makes_one_file_of_its_regions(folder):
+    for path in (ROOT / "tests/spec/drawings").iterdir():
+        shutil.copy(path, folder)
+    (folder / "traces.csv").write_text("x1,y1,x2,y2\n10,20,20,26\n22,50,34,58\n")
+    left = run_block(folder, "\n".join(blocks("docs/drawings.md")))
+    assert left["block"].area == pytest.approx(5e-3 - 0.2e-3 - 0.05e-3)
+    assert left["mapped"].traces == tuple(map(pytest.approx, left["traces"].traces))
+    assert {len(left[name].bounds()[0]) for name in ("inclined", "quartz", "vein", "granite", "notched")} == {2}
+    assert len(left["core"].bounds()[0]) == 3 and left["result"].stopped == ""
 
 
 def test_page_of_references_computes_its_numbers(folder):

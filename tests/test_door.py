@@ -16,7 +16,7 @@ ROOT = Path(__file__).resolve().parent.parent
 PYPROJECT = (ROOT / "pyproject.toml").read_text(encoding="utf-8")
 MODULE_OF = {"pillow": "PIL", "lazy-loader": "lazy_loader", "annotated-types": "annotated_types"}
 MOVIE = {"imageio", "imageio-ffmpeg"}  # a movie is not written without them, but a run goes on
-FIRST_USE = {"pint"}  # imported where a text with a unit is met
+FIRST_USE = {"pint", "shapely"}  # imported where a text with a unit is met, and an outline
 OLD_PYTHON = {"tomli"} if sys.version_info >= (3, 11) else set()  # which has none of its own
 
 

@@ -3,6 +3,7 @@
 from dataclasses import dataclass
 
 import numpy as np
+from scipy.spatial import cKDTree
 
 from rsmpm_ti.analysis.load_curve import load_at
 from rsmpm_ti.analysis.wing_cracks import FIT_LENGTH, MIN_PARTICLES, TIP_RADIUS, crack_directions, leaving_angle
@@ -43,9 +44,8 @@ def nearest_tip(x: np.ndarray, tips: tuple[FlawTip, ...]) -> np.ndarray:
     """Index of the nearest tip to each place x [e, 2], -1 where that is beyond the tip's reach, [e]."""
     if not tips or len(x) == 0:
         return np.full(len(x), -1)
-    far = np.linalg.norm(x[:, None, :2] - np.stack([tip.position for tip in tips]), axis=2)
-    nearest = far.argmin(axis=1)
-    return np.where(far.min(axis=1) < np.array([tip.reach for tip in tips])[nearest], nearest, -1)
+    far, nearest = cKDTree(np.stack([tip.position for tip in tips])).query(x[:, :2])
+    return np.where(far < np.array([tip.reach for tip in tips])[nearest], nearest, -1)
 
 
 FIRST = 20

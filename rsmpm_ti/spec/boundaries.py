@@ -17,9 +17,8 @@ from typing import Annotated, Literal
 import taichi as ti
 from annotated_types import Interval
 
-from rsmpm_ti.checks import Finite, Remedy, checked
+from rsmpm_ti.checks import Coordinate, Finite, Remedy, checked
 from rsmpm_ti.errors import refuse
-from rsmpm_ti.spec.regions import Coordinate
 from rsmpm_ti.units import ForceOrLineLoad, Pressure, Velocity
 
 MAX_FRICTION = 1e3

@@ -6,10 +6,9 @@ from typing import Annotated, Literal
 
 from annotated_types import Interval
 
-from rsmpm_ti.checks import Remedy, checked
+from rsmpm_ti.checks import MAX_COORDINATE, Position, Remedy, checked
 from rsmpm_ti.errors import refuse
 from rsmpm_ti.method.time_step import MAX_COUNT
-from rsmpm_ti.spec.regions import MAX_COORDINATE, Position
 from rsmpm_ti.units import Angle, Length
 
 MIN_DX = 1e-9

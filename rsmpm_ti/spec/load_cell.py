@@ -7,10 +7,9 @@ from typing import Annotated, Literal
 
 import numpy as np
 
-from rsmpm_ti.checks import Positive, checked
+from rsmpm_ti.checks import Position, Positive, checked
 from rsmpm_ti.errors import refuse
 from rsmpm_ti.spec.boundaries import Axis, Platen
-from rsmpm_ti.spec.regions import Position
 from rsmpm_ti.units import LengthOrArea
 
 GAUGE_NAME = re.compile(r"[a-z][a-z0-9_]{0,39}")

@@ -19,6 +19,7 @@ from rsmpm_ti.checks import KNOWN, STRICT, annotations, members, native, phrase,
 from rsmpm_ti.errors import RockWarning, SceneError, refuse, short, shown
 from rsmpm_ti.rock.rock import Rock
 from rsmpm_ti.rock.sheet.data_sheet import DataSheet
+from rsmpm_ti.spec.drawings.drawn_file import beside
 from rsmpm_ti.spec.library.places import find, in_place_of
 from rsmpm_ti.spec.library.rocks import ends_early, load_sheet, with_rock
 from rsmpm_ti.spec.scene import Scene, Schedule, unchecked
@@ -49,6 +50,11 @@ def load_scene(
     path, settings = find(name), dict(settings or {})
     if said := in_place_of(name, path):
         warnings.warn(said, RockWarning, stacklevel=2)
+    with beside(path.parent):
+        return _load_scene(path, quick, settings, overrides)
+
+
+def _load_scene(path: Path, quick: bool, settings: dict[str, object], overrides: dict[str, object]) -> Scene:
     recorded = path.suffix == ".json"
     function, parameters, quick_keywords = (None, {}, {}) if recorded else _function(path)
     fields = _fields_of(settings, parameters)

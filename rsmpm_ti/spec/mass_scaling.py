@@ -36,7 +36,7 @@ import numpy as np
 
 from rsmpm_ti.errors import SceneError
 from rsmpm_ti.spec.loading_start import Affine, AtRest, Press, Ramp
-from rsmpm_ti.spec.regions import Box, Difference, Disc, Slit, slits_of
+from rsmpm_ti.spec.regions import Box, Difference, Disc, Slit, cuts_of, slits_of
 
 MAX_TIME_SCALE = 1000.0
 """Largest time scale; the smallest is 1, the true density."""
@@ -148,7 +148,7 @@ def _specimen(scene) -> Box | Disc:
         region = scene.bodies[0].region
         whole = region.whole if isinstance(region, Difference) else region
         fits = isinstance(whole, Box) or (isinstance(whole, Disc) and scene.dim == 2)
-        if not fits or len(slits_of(region)) != len(getattr(region, "removed", ())):
+        if not fits or len(slits_of(region)) != len(cuts_of(region)):
             problem = "it knows a box (in 2D a disc too) in which there may be slits"
         else:
             axis = loading.platens[0].axis

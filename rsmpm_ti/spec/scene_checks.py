@@ -13,6 +13,7 @@ from rsmpm_ti.method.shape import Gimp
 from rsmpm_ti.method.time_step import MAX_COUNT
 from rsmpm_ti.rock.after_failure import check_law
 from rsmpm_ti.spec.boundaries import Platen
+from rsmpm_ti.spec.drawings.answers import inside
 from rsmpm_ti.spec.loading_start import Affine, Press, Program, Ramp
 from rsmpm_ti.spec.mass_scaling import MIN_TRANSITS
 
@@ -201,7 +202,7 @@ def check_stop(scene) -> None:
 def _near_rock(scene, point: tuple[float, ...]) -> bool:
     """Whether a point, or one a cell from it along axes or between them, lies in a body; surfaces belong to no body."""
     around = np.array(point) + scene.domain.dx * np.array(list(itertools.product((-1.0, 0.0, 1.0), repeat=scene.dim)))
-    return any(body.region.contains(around).any() for body in scene.bodies)
+    return any(inside(body.region, around).any() for body in scene.bodies)
 
 
 def check_motion(scene) -> None:

@@ -12,6 +12,7 @@ import numpy as np
 from annotated_types import Interval
 
 from rsmpm_ti.checks import Remedy, Seed, checked
+from rsmpm_ti.spec.drawings.answers import inside
 
 PerAxis = Annotated[int, Interval(ge=1, le=8)]
 
@@ -48,7 +49,7 @@ def _whole_cells(region, origin: np.ndarray, spacing: float) -> Seeds:
     """One particle per sub-cell whose centre lies inside, with the sub-cell's volume: edges become stairs."""
     lower, upper = region.bounds()
     x = _points(_axes(lower, upper, origin, spacing))
-    x = x[region.contains(x)]
+    x = x[inside(region, x)]
     return Seeds(x, np.full(len(x), spacing ** x.shape[1]))
 
 
@@ -67,15 +68,15 @@ def _fractions(region, x: np.ndarray, spacing: float) -> tuple[np.ndarray, np.nd
     """Fraction of each sub-cell's volume inside a region [n], and its first moment about the centre [n, dim]."""
     dim = x.shape[1]
     corners = np.array(list(itertools.product((-0.5, 0.0, 0.5), repeat=dim))) * (1.0 - 1e-6) * spacing
-    inside = np.array([region.contains(x + corner) for corner in corners])
-    cut = np.flatnonzero(inside.any(axis=0) & ~inside.all(axis=0))
+    within = np.array([inside(region, x + corner) for corner in corners])
+    cut = np.flatnonzero(within.any(axis=0) & ~within.all(axis=0))
     steps = ((np.arange(SAMPLES) + 0.5) / SAMPLES - 0.5) * spacing
     count, total = np.zeros(len(cut)), np.zeros((len(cut), dim))
     for sample in itertools.product(steps, repeat=dim):
-        held = region.contains(x[cut] + sample)
+        held = inside(region, x[cut] + sample)
         count += held
         total += held[:, None] * np.array(sample)
-    fraction, moment = inside.all(axis=0).astype(float), np.zeros((len(x), dim))
+    fraction, moment = within.all(axis=0).astype(float), np.zeros((len(x), dim))
     fraction[cut], moment[cut] = count / SAMPLES**dim, total / SAMPLES**dim
     return fraction, moment
 
@@ -135,4 +136,4 @@ class Jittered:
         lattice = Lattice(particles_per_axis=self.particles_per_axis, fitted=self.fitted).fill(region, origin, dx)
         reach = abs(self.amount) * dx / self.particles_per_axis
         moved = lattice.x + np.random.default_rng(self.seed).uniform(-reach, reach, lattice.x.shape)
-        return Seeds(np.where(region.contains(moved)[:, None], moved, lattice.x), lattice.volume)
+        return Seeds(np.where(inside(region, moved)[:, None], moved, lattice.x), lattice.volume)

@@ -156,7 +156,8 @@ def test_schema_holds_ranges_units_choices_and_defaults():
     assert (hooke["nu"]["exclusiveMinimum"], hooke["nu"]["exclusiveMaximum"]) == (-1.0, 0.5)
     assert (hooke["E"]["description"], hooke["E"]["minimum"]) == ("[Pa]", 1e-12)
     assert described["Scene"]["properties"]["order"]["enum"] == ["musl", "usf", "usl"]
-    regions = {"#/$defs/" + name for name in ("Box", "Disc", "Slit", "Union", "Difference")}
+    names = "Box Disc Slit Segments Polygon Mask Mesh Union Difference Turned".split()
+    regions = {f"#/$defs/{name}" for name in names}
     assert {one["$ref"] for one in described["Body"]["properties"]["region"]["oneOf"]} == regions
     assert described["Body"]["properties"]["seeding"]["default"] == to_plain(Lattice())
 

@@ -8,9 +8,10 @@ import time
 
 import crafted
 import pytest
+from drawn import PLATE, SECTION, scene
 from hostile import check_runnable, clear, quickly
 
-from rsmpm_ti import load_scene
+from rsmpm_ti import Difference, Mask, Mesh, Polygon, Segments, Turned, load_scene
 from rsmpm_ti.errors import SceneError
 from rsmpm_ti.scene import main
 from rsmpm_ti.spec import scene_json
@@ -20,7 +21,12 @@ from rsmpm_ti.spec.scene_json import read_scene, to_plain
 @pytest.fixture(scope="module")
 def texts() -> list[str]:
     """Sound records."""
-    return [json.dumps({"scene": to_plain(load_scene(name, quick=True))}) for name in ("cube", "cube_lab", "two_flaws")]
+    shipped = [load_scene(name, quick=True) for name in ("cube", "cube_lab", "two_flaws")]
+    plate, mask = Mesh(file=PLATE), Mask(image=SECTION, mm_per_pixel=1.0, greys=(0, 100), origin=(0.05, 0.0))
+    flaws = Segments(traces=((0.01, 0.02, 0.02, 0.026), (0.022, 0.05, 0.034, 0.058)), width=4e-3)
+    wedge = Polygon(points=((0.11, 0.0), (0.15, 0.0), (0.14, 0.08)))
+    drawn = scene(Difference(whole=plate, removed=(flaws,)), mask, Turned(region=wedge, angle=10.0))
+    return [json.dumps({"scene": to_plain(made)}) for made in (*shipped, drawn)]
 
 
 def is_sound(seed: int, texts: list[str], path) -> bool:

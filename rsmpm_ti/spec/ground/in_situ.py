@@ -20,11 +20,10 @@ from typing import Annotated
 import numpy as np
 from annotated_types import Interval
 
-from rsmpm_ti.checks import NotNegative, Remedy, checked
+from rsmpm_ti.checks import Coordinate, NotNegative, Remedy, checked
 from rsmpm_ti.errors import refuse
 from rsmpm_ti.spec.boundaries import Axis
 from rsmpm_ti.spec.confinement import MAX_FRACTION
-from rsmpm_ti.spec.regions import Coordinate
 from rsmpm_ti.units import Pressure
 
 MAX_RATIO = 100.0

@@ -16,7 +16,7 @@ def machine() -> dict[str, str]:
     import importlib.metadata
     import platform
 
-    packages = ("taichi", "numpy", "scipy", "meshio", "matplotlib", "imageio")
+    packages = ("taichi", "numpy", "scipy", "shapely", "meshio", "pillow", "matplotlib", "imageio")
     versions = {}
     for name in packages:
         try:

@@ -10,7 +10,11 @@ import numpy as np
 
 from rsmpm_ti.errors import SceneError, refuse
 from rsmpm_ti.spec.boundaries import Platen
-from rsmpm_ti.spec.regions import Box, Disc, Slit, cuts_of, parts_of
+from rsmpm_ti.spec.drawings.answers import inside
+from rsmpm_ti.spec.drawings.mask import Mask
+from rsmpm_ti.spec.drawings.mesh import Mesh
+from rsmpm_ti.spec.drawings.polygon import Polygon
+from rsmpm_ti.spec.regions import Box, Disc, Slit, Turned, parts_of, removals_of, taken_apart
 from rsmpm_ti.spec.seeding import Seeds
 
 SHARED_FRACTION = 1e-3
@@ -56,7 +60,7 @@ def _inside(scene, seeds: list[Seeds], mine: int, other: int) -> float:
     x, region = seeds[mine].x, scene.bodies[other].region
     low, high = region.bounds()
     near = np.flatnonzero(np.all((x > low) & (x < high), axis=1))
-    return float(seeds[mine].volume[near][region.contains(x[near])].sum()) if len(near) else 0.0
+    return float(seeds[mine].volume[near][inside(region, x[near])].sum()) if len(near) else 0.0
 
 
 def outside_fraction(whole, slit: Slit) -> float:
@@ -88,30 +92,42 @@ def _inside_fraction(whole, slit: Slit) -> float:
 
 
 def _flaws(scene):
-    """(body, slit, fraction of it outside) for every slit."""
+    """(body, what was cut, its slits with the fraction of each that is outside) for every slit and set of them."""
     for k, body in enumerate(scene.bodies):
-        for whole, part in cuts_of(body.region):
-            if isinstance(part, Slit):
-                yield k, part, outside_fraction(whole, part)
+        for whole, part in removals_of(body.region):
+            slits = [piece for piece in taken_apart(part) if isinstance(piece, Slit)]
+            if slits:
+                yield k, part, [(slit, outside_fraction(whole, slit)) for slit in slits]
 
 
 def check_flaws(scene) -> None:
-    """Refuse a slit that is all outside."""
-    for k, slit, outside in _flaws(scene):
-        if outside == 1.0:
+    """Refuse a slit that is all outside, and a set of which all are."""
+    for k, part, slits in _flaws(scene):
+        if all(outside == 1.0 for _, outside in slits):
             lower, upper = (bound.tolist() for bound in scene.bodies[k].region.bounds())
             box = f"in its body, bodies[{k}], whose lower and upper corners are {lower} and {upper} m"
-            raise refuse("slit.centre", slit.centre, box, "it cuts nothing where it is")
+            name = "slit.centre" if len(slits) == 1 else "segments.traces"
+            value = slits[0][0].centre if len(slits) == 1 else part
+            raise refuse(name, value, box, "it cuts nothing where it is")
 
 
 def flaws_said(scene) -> list[str]:
-    """A flaw that reaches out of its body is a notch, or cuts the body in two."""
-    return [
-        f"the slit at {slit.centre} m, {slit.length:g} m long, reaches out of bodies[{k}]: {100.0 * outside:.2g} % of "
-        f"it lies outside, so it is a notch or cuts the body in two"
-        for k, slit, outside in _flaws(scene)
-        if outside > 0.0
-    ]
+    """A flaw that reaches out of its body is a notch, or cuts the body in two; of a set only how many do."""
+    said = []
+    for k, _, slits in _flaws(scene):
+        reaching = [(slit, outside) for slit, outside in slits if outside > 0.0]
+        if len(slits) > 1 and reaching:
+            said.append(
+                f"{len(reaching)} of the {len(slits)} flaws of a set reach out of bodies[{k}], so they are notches, or "
+                f"cut it in two, or cut nothing"
+            )
+        elif reaching:
+            slit, outside = reaching[0]
+            said.append(
+                f"the slit at {slit.centre} m, {slit.length:g} m long, reaches out of bodies[{k}]: "
+                f"{100.0 * outside:.2g} % of it lies outside, so it is a notch or cuts the body in two"
+            )
+    return said
 
 
 def _rooms(scene, seeds: list[Seeds]):
@@ -161,16 +177,24 @@ def _room(scene, platen: Platen, body, seed: Seeds) -> float:
 def measure(region) -> float:
     """Area (volume in 3D) of a region: in closed form where it has one, else by counting points; NaN for one of so many
     parts that counting would take seconds."""
-    low, high = (np.asarray(bound, dtype=float) for bound in region.bounds())
-    box = math.prod(high - low)
-    if isinstance(region, Box):
-        return box
-    if isinstance(region, Disc):
-        return math.pi * region.radius**2 if len(low) == 2 else 4.0 / 3.0 * math.pi * region.radius**3
+    known = _closed_form(region)
+    if known is not None:
+        return known
     if parts_of(region) > MAX_PARTS:
         return math.nan
+    low, high = (np.asarray(bound, dtype=float) for bound in region.bounds())
     x = low + _kronecker(SAMPLES, len(low)) * (high - low)
-    return box * np.count_nonzero(region.contains(x)) / SAMPLES
+    return math.prod(high - low) * np.count_nonzero(inside(region, x)) / SAMPLES
+
+
+def _closed_form(region) -> float | None:
+    if isinstance(region, Turned):
+        return _closed_form(region.region)
+    if isinstance(region, Box):
+        return math.prod(np.subtract(region.upper, region.lower))
+    if isinstance(region, Disc):
+        return math.pi * region.radius**2 if len(region.centre) == 2 else 4.0 / 3.0 * math.pi * region.radius**3
+    return region.area if isinstance(region, Polygon | Mask | Mesh) else None
 
 
 def _kronecker(count: int, dim: int) -> np.ndarray:
@@ -184,7 +208,7 @@ def _kronecker(count: int, dim: int) -> np.ndarray:
 
 def area_errors(scene, seeds: list[Seeds]) -> list[float]:
     """Particles' area over that of their region, less 1, for each body; NaN where it is not known."""
-    counted = sum(not isinstance(body.region, Box | Disc) for body in scene.bodies)
+    counted = sum(_closed_form(body.region) is None for body in scene.bodies)
     return [
         math.nan if counted > MAX_PARTS else s.volume.sum() / measure(body.region) - 1.0
         for body, s in zip(scene.bodies, seeds, strict=True)

@@ -11,7 +11,7 @@ from dataclasses import dataclass, replace
 from rsmpm_ti.checks import KNOWN, is_pressure, pressure_said, too_small
 from rsmpm_ti.errors import SceneError
 from rsmpm_ti.spec.mass_scaling import estimate
-from rsmpm_ti.spec.regions import Slit, cuts_of
+from rsmpm_ti.spec.regions import Slit, removals_of
 
 
 @dataclass(frozen=True)
@@ -104,7 +104,7 @@ def _angles_said(scene) -> list[str]:
     """Angles beside the rock that look like radians."""
     said = []
     for body in scene.bodies:
-        for _, part in cuts_of(body.region):
+        for _, part in removals_of(body.region):
             angle = part.angle if isinstance(part, Slit) else 0.0
             degrees = math.degrees(angle)
             rest = abs(degrees - WHOLE_ANGLE * round(degrees / WHOLE_ANGLE))

@@ -19,7 +19,7 @@ from typing import NamedTuple
 import numpy as np
 
 from rsmpm_ti.errors import SceneError
-from rsmpm_ti.spec.regions import Box, Slit, cuts_of
+from rsmpm_ti.spec.regions import Box, Slit, Turned, cuts_of
 from rsmpm_ti.spec.seeding import Seeds
 
 TIED_FRACTION = 0.03
@@ -157,6 +157,9 @@ def check_cuts(body, shape, dx: float, origin: np.ndarray, turn: Turn | None = N
         elif isinstance(part, Box) and (slit := _as_slit(whole, part)) is not None:
             name = f"box.upper = {part.upper}: its width"
             check_slit(body.region, slit, body.seeding, shape, dx, origin, name, turn)
+        elif isinstance(part, Turned) and isinstance(part.region, Box) and (slit := _as_slit(whole, part.region)):
+            name = f"box.upper = {part.region.upper} (turned by {part.angle:g} degrees): its width"
+            check_slit(body.region, part.carry(slit), body.seeding, shape, dx, origin, name, turn)
 
 
 def _as_slit(whole, box: Box) -> Slit | None:
