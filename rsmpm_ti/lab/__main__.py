@@ -26,7 +26,9 @@ def parser() -> argparse.ArgumentParser:
     p.add_argument("--rock", default="paper_rock", metavar="FILE|NAME", help="a rock's data sheet, or one of the shelf")
     p.add_argument("--size", metavar="L", help="width of the specimen, diameter of a disc, depth of a beam (54mm)")
     p.add_argument("--dx", metavar="L", help="edge of a cell (0.5mm)")
-    p.add_argument("--confinement", metavar="P,...", help="of a triaxial set, or normal stresses of shear: 0,5MPa,10MPa")
+    p.add_argument(
+        "--confinement", metavar="P,...", help="of a triaxial set, or normal stresses of shear: 0,5MPa,10MPa"
+    )
     p.add_argument("--seeds", type=int, default=1, metavar="N", help="specimens of each kind; means get error bars")
     p.add_argument("--quick", action="store_true", help="coarser cells")
     p.add_argument("--out", metavar="DIR", help="folder of the report (default renders/lab/TEST)")
@@ -103,8 +105,8 @@ def describe(specimens: list[Specimen]) -> str:
         scene = one.scene
         count = sum(len(body.x) for body in scene.particles())
         lines.append(
-            f"{one.label:<18} {one.about}: {count} particles, dx = {1e3 * scene.domain.dx:.4g} mm, {scene.steps} steps, "
-            f"time_scale {scene.time_scale:.3g}"
+            f"{one.label:<18} {one.about}: {count} particles, dx = {1e3 * scene.domain.dx:.4g} mm, "
+            f"{scene.steps} steps, time_scale {scene.time_scale:.3g}"
         )
     return "\n".join(lines)
 
@@ -127,7 +129,9 @@ def main(arguments: list[str] | None = None) -> int:
         if options.check:
             print(describe([one for seed in specimens for one in seed]))
             return 0
-    return run(test, sheet, asked, specimens, folder_of(options), options, sys.argv[1:] if arguments is None else arguments)
+    return run(
+        test, sheet, asked, specimens, folder_of(options), options, sys.argv[1:] if arguments is None else arguments
+    )
 
 
 def run(test, sheet, asked: Options, specimens, out: Path, options, arguments: list[str]) -> int:
@@ -168,7 +172,9 @@ def table(report: dict) -> str:
     for quantity in report["quantities"]:
         value = f"{quantity['shown']} {quantity['shown_unit']}".strip()
         given = quantity["given"]
-        over = "" if given != given or not given else f"{100.0 * (quantity['value'] / given - 1.0):+.2g} % off the sheet"
+        over = (
+            "" if given != given or not given else f"{100.0 * (quantity['value'] / given - 1.0):+.2g} % off the sheet"
+        )
         lines.append(f"  {quantity['name']:<34} {value:<26} {over}".rstrip())
     lines += [f"{'NOT VALID' if d['grave'] else 'note'}: {d['run']}: {d['sentence']}" for d in report["doubts"]]
     return "\n".join(lines)

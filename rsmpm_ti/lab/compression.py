@@ -12,6 +12,7 @@ from rsmpm_ti.records.history_table import nominal_stress
 from rsmpm_ti.rock.rock import Rock
 from rsmpm_ti.rock.sheet.data_sheet import DataSheet
 from rsmpm_ti.setups.uniaxial import uniaxial_test
+from rsmpm_ti.spec.loading_start import Ramp
 from rsmpm_ti.spec.scene import Output, Scene
 from rsmpm_ti.spec.seeding import Jittered
 
@@ -22,7 +23,7 @@ CELLS, QUICK_CELLS = 50, 25
 """Across the width."""
 
 UNEVEN = 0.01
-"""Jitter of the particles, of their spacing: on a lattice all is symmetric, and two faults cross and hold each other."""
+"""Jitter of the particles, of their spacing: on a lattice two faults cross and hold each other."""
 
 BEYOND = {False: 1.3, True: 2.2}
 """Strain at the end over that at the peak, without and with a jacket: there a fault slips until friction is left."""
@@ -70,9 +71,17 @@ def strength_of(one: Measured) -> float:
 
 def residual_of(one: Measured) -> float:
     """Mean stress over the last tenth of the strain [Pa]; NaN where the test ended before."""
-    end, strain = one.specimen.scene.schedule.strain_end, one.history["axial_strain"]
-    late = strain > LATE * end
+    late = one.history["axial_strain"] > LATE * final_strain(one.specimen.scene)
     return float(nominal_stress(one.history)[late].mean()) if late.any() else math.nan
+
+
+def final_strain(scene: Scene) -> float:
+    """Of the platens at the end of a run that nothing stops."""
+    schedule, start = scene.schedule, scene.loading.start
+    if schedule.strain_end is not None:
+        return schedule.strain_end
+    ramp = start.time if isinstance(start, Ramp) else 0.0
+    return scene.loading.strain_rate * (scene.t_end - 0.5 * ramp)
 
 
 def plan_ucs(sheet: DataSheet, options: Options, seed: int) -> list[Specimen]:

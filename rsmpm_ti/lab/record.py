@@ -76,5 +76,7 @@ def write_records(out: Path, report: dict) -> None:
     for quantity in report["quantities"]:
         given = quantity["given"]
         over = quantity["value"] / given if given and not math.isnan(given) else math.nan
-        rows.append([quantity[name] for name in ("name", "value", "unit", "error", "given")] + [over, quantity["about"]])
+        rows.append(
+            [quantity[name] for name in ("name", "value", "unit", "error", "given")] + [over, quantity["about"]]
+        )
     write_csv(out / "quantities.csv", header, rows)

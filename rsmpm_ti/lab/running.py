@@ -20,6 +20,8 @@ from rsmpm_ti.spec.scene_json import to_plain
 
 @dataclass(frozen=True)
 class Task:
+    """What a process is given to run."""
+
     specimen: Specimen
     folder: Path
     threads: int

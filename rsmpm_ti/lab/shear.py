@@ -4,7 +4,7 @@ import math
 
 import numpy as np
 
-from rsmpm_ti.lab.compression import UNEVEN, breakage, residual_of, strength_of
+from rsmpm_ti.lab.compression import UNEVEN, residual_of, strength_of
 from rsmpm_ti.lab.quantity import Quantity
 from rsmpm_ti.lab.standard import LabTest, Measured, Options, Specimen
 from rsmpm_ti.rock.rock import Rock

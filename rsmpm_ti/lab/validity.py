@@ -6,11 +6,12 @@ from dataclasses import dataclass
 import numpy as np
 
 from rsmpm_ti.lab.bending import characteristic_length, energy_of
+from rsmpm_ti.lab.compression import final_strain
 from rsmpm_ti.lab.standard import Measured
 
 MAX_KINETIC, MAX_ENERGY, CELLS_IN_ZONE, MAX_SCALE_ERROR = 0.05, 0.01, 4.0, 0.98
-"""Kinetic over stored energy up to the peak; energy that is not accounted for, over the work; cells in the process zone,
-which is half of l_ch for a linear softening (Hillerborg et al. 1976); fraction of the strain at which a peak is one."""
+"""Kinetic over stored energy up to the peak; energy that is not accounted for, over the work; cells in the process
+zone, half of l_ch for a linear softening (Hillerborg et al. 1976); fraction of the strain at which a peak is one."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -40,7 +41,7 @@ def _no_peak(test: str, one: Measured) -> Doubt | None:
 
 
 def _peak_at_end(test: str, one: Measured) -> Doubt | None:
-    strain, end = one.summary["peak_filtered_strain"], one.specimen.scene.schedule.strain_end
+    strain, end = one.summary["peak_filtered_strain"], final_strain(one.specimen.scene)
     if strain is None or abs(strain) < MAX_SCALE_ERROR * abs(end):
         return None
     return _doubt(one, True, f"the peak comes at {100.0 * strain / end:.0f} % of the run's strain: it may not be one")

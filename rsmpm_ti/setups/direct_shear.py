@@ -16,7 +16,7 @@ GAP = 1
 """Cells of each half of the box that its walls leave free on both sides of the plane of shear."""
 
 RAMP = 0.3
-"""Of the time to failure in which lid and wall come to full stress and speed, together: 15 % of the shear is then on."""
+"""Of the time to failure in which lid and wall come to full stress and speed: 15 % of the shear is then on."""
 
 
 def shear_test(
@@ -51,15 +51,16 @@ def shear_test(
     criterion = rock.criterion
     strength = criterion.cohesion + normal_stress * math.tan(math.radians(criterion.friction_angle))
     duration = 2.0 * (1.0 + elastic.nu) * strength / elastic.E * height / speed
-    scale = time_scale or slow_time_scale(duration, 4.0 * height / shear_speed)
+    scale = time_scale or slow_time_scale(duration, 8.0 * height / shear_speed)
     return Scene(
         title=title,
         domain=Domain(lower=(-room, -room), upper=(length + room, height + room), dx=dx),
         bodies=(Body(region=Box(lower=(0.0, 0.0), upper=(length, height)), seeding=seeding or Lattice()),),
         rock=rock,
         loading=Loading(
-            boundaries=walls, start=Ramp(time=RAMP * duration), time_scale=scale, local_damping=AUTO_DAMPING, width=length,
+            boundaries=walls, start=Ramp(time=RAMP * duration), time_scale=scale, local_damping=AUTO_DAMPING,
+            width=length,
         ),
-        schedule=Schedule(strain_end=displacement_end / length, cfl=cfl),
+        schedule=Schedule(t_end=displacement_end / speed + 0.5 * RAMP * duration, cfl=cfl),
         output=output or Output(),
     )  # fmt: skip

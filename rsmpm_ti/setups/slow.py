@@ -2,9 +2,9 @@
 
 from rsmpm_ti.spec.mass_scaling import MAX_TIME_SCALE
 
-PERIODS = 3.0
+PERIODS = 2.0
 """Of the first swing until the peak. A load that rises steadily after a smooth ramp then swings by less than 1/(2 pi
-PERIODS) of itself, 4 %, and local damping takes two thirds of that in half a period."""
+PERIODS) of itself, 8 %, and local damping takes two thirds of that in half a period."""
 
 
 def slow_time_scale(duration: float, period: float) -> float:

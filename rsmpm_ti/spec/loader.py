@@ -51,10 +51,10 @@ def load_scene(
     if said := in_place_of(name, path):
         warnings.warn(said, RockWarning, stacklevel=2)
     with beside(path.parent):
-        return _load_scene(path, quick, settings, overrides)
+        return _load_scene(path, quick, settings, overrides, rock)
 
 
-def _load_scene(path: Path, quick: bool, settings: dict[str, object], overrides: dict[str, object]) -> Scene:
+def _load_scene(path: Path, quick: bool, settings: dict[str, object], overrides: dict[str, object], rock) -> Scene:
     recorded = path.suffix == ".json"
     function, parameters, quick_keywords = (None, {}, {}) if recorded else _function(path)
     fields = _fields_of(settings, parameters)
