@@ -2,6 +2,7 @@
 
 import json
 import pickle
+import sys
 from dataclasses import replace
 from pathlib import Path
 
@@ -95,6 +96,11 @@ def test_outline_that_is_none_is_refused():
     refused(lambda: Polygon(points=((0, 0), (1, 0), (1, 1)), holes=(hole,)), "polygon.holes", "outside shell")
     ball = Disc(centre=(0.0, 0.0, 0.0), radius=0.01)
     refused(lambda: Union(parts=(Polygon(points=NOTCHED), ball)), "of one dimension")
+
+
+def test_outline_without_its_library_is_one_line(monkeypatch):
+    monkeypatch.setitem(sys.modules, "shapely", None)
+    refused(lambda: Polygon(points=NOTCHED), "pip install shapely")
 
 
 # --- images
