@@ -83,7 +83,8 @@ def test_record_of_a_drawing_is_read_back(region, _):
 def test_a_ring_closes_itself_and_may_be_an_array():
     closed = Polygon(points=[*NOTCHED, NOTCHED[0]])
     assert closed.area == Polygon(points=np.array(NOTCHED)[::-1]).area == Polygon(points=NOTCHED).area
-    assert Polygon(points=np.array(NOTCHED)) == Polygon(points=NOTCHED)
+    for points in (np.array(NOTCHED), list(np.array(NOTCHED)), [list(corner) for corner in NOTCHED]):
+        assert Polygon(points=points) == Polygon(points=NOTCHED)
 
 
 def test_outline_that_is_none_is_refused():
