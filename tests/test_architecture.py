@@ -25,8 +25,8 @@ PAINT_SEES = {"process", "errors", "units", "records", "paint"}
 """Pictures are made of records alone, so that whoever has a run's files can paint it."""
 
 WITHOUT_TAICHI = (
-    "ctrl_c process errors units checks records spec.regions spec.seeding spec.review.slit_check rock.heterogeneity "
-    "output.files analysis"
+    "ctrl_c process errors units checks records spec.drawings spec.regions spec.seeding spec.review.slit_check "
+    "rock.heterogeneity output.files analysis"
 ).split()
 """Modules and rooms that are read where Taichi is not started, or is not there."""
 

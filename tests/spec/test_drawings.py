@@ -2,6 +2,7 @@
 
 import json
 import pickle
+import sys
 from dataclasses import replace
 from pathlib import Path
 
@@ -82,7 +83,8 @@ def test_record_of_a_drawing_is_read_back(region, _):
 def test_a_ring_closes_itself_and_may_be_an_array():
     closed = Polygon(points=[*NOTCHED, NOTCHED[0]])
     assert closed.area == Polygon(points=np.array(NOTCHED)[::-1]).area == Polygon(points=NOTCHED).area
-    assert Polygon(points=np.array(NOTCHED)) == Polygon(points=NOTCHED)
+    for points in (np.array(NOTCHED), list(np.array(NOTCHED)), [list(corner) for corner in NOTCHED]):
+        assert Polygon(points=points) == Polygon(points=NOTCHED)
 
 
 def test_outline_that_is_none_is_refused():
@@ -95,6 +97,11 @@ def test_outline_that_is_none_is_refused():
     refused(lambda: Polygon(points=((0, 0), (1, 0), (1, 1)), holes=(hole,)), "polygon.holes", "outside shell")
     ball = Disc(centre=(0.0, 0.0, 0.0), radius=0.01)
     refused(lambda: Union(parts=(Polygon(points=NOTCHED), ball)), "of one dimension")
+
+
+def test_outline_without_its_library_is_one_line(monkeypatch):
+    monkeypatch.setitem(sys.modules, "shapely", None)
+    refused(lambda: Polygon(points=NOTCHED), "pip install shapely")
 
 
 # --- images

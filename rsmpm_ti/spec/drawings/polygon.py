@@ -20,7 +20,13 @@ def rows(value):
         value = value.tolist()
     if not isinstance(value, list | tuple):
         return value
-    return tuple(native(tuple(row)) if isinstance(row, list | tuple) else row for row in value)
+    return tuple(map(_row, value))
+
+
+def _row(row):
+    if isinstance(row, np.ndarray):
+        row = row.tolist()
+    return native(tuple(row)) if isinstance(row, list | tuple) else row
 
 
 def _as_tuple(value):

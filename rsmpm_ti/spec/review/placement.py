@@ -74,7 +74,7 @@ def outside_fraction(whole, slit: Slit) -> float:
     depths = [low[2] + f * (high[2] - low[2]) for f in (0.05, 0.275, 0.5, 0.725, 0.95)] if len(low) == 3 else [None]
     held = np.zeros(len(points), dtype=bool)
     for z in depths:
-        held |= whole.contains(points if z is None else np.column_stack([points, np.full(len(points), z)]))
+        held |= inside(whole, points if z is None else np.column_stack([points, np.full(len(points), z)]))
     return 1.0 - float(held.mean()) if held.any() else 1.0 - _inside_fraction(whole, slit)
 
 
@@ -87,7 +87,7 @@ def _inside_fraction(whole, slit: Slit) -> float:
     if np.any(high <= low):
         return 0.0
     x = low + _kronecker(SAMPLES, len(low)) * (high - low)
-    both = float(np.mean(slit.contains(x) & whole.contains(x)))
+    both = float(np.mean(slit.contains(x) & inside(whole, x)))
     return both * float(np.prod((high - low)[:2])) / (slit.length * slit.width)
 
 

@@ -7,8 +7,8 @@ Their stiffness kappa E'/dx per area holds up an opening crack: with the mean op
 length 2a in a field sigma (Westergaard 1939, J. Appl. Mech. 6:A49), springs in parallel carry kappa pi a/dx of what the
 crack still lets go. A light node between the faces may do so, as its gradient is not light.
 
-A `Box` that is cut out is a slit along the grid. When it fails: it knows one slit at a time, and no removed region of
-another kind; two bodies with a gap between them are tied in the same way, and are not checked.
+A `Box` that is cut out is a slit, along the grid or turned. When it fails: it knows one slit at a time, and no removed
+region of another kind; two bodies with a gap between them are tied in the same way, and are not checked.
 """
 
 import itertools
