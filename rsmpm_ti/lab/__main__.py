@@ -13,6 +13,7 @@ from rsmpm_ti.lab.standard import LabTest, Options, Specimen
 from rsmpm_ti.process import command, tell
 
 MAX_SEEDS = 100
+EXAMPLES = {"m": "54mm", "Pa": "10MPa"}
 
 
 def parser() -> argparse.ArgumentParser:
@@ -55,17 +56,17 @@ def options_of(options: argparse.Namespace) -> Options:
         if text is None:
             return None
         try:
-            value = float(text) if _plain(text) else quantity(text, Unit(unit))
+            value = 0.0 if _is_nothing(text) else quantity(text, Unit(unit))
         except ValueError:
             value = None
         if value is None:
-            raise refuse(f"--{name}", text, f"a number of {unit}, or one with its unit")
+            raise refuse(f"--{name}", text, f"a number with its unit, such as {EXAMPLES[unit]}")
         return value
 
     size, dx = number("size", options.size, "m"), number("dx", options.dx, "m")
     for name, value in (("size", size), ("dx", dx)):
         if value is not None and not 1e-6 <= value <= 1e3:
-            raise refuse(f"--{name}", value, "a length in [1e-6, 1000] m", "write its unit: 54mm")
+            raise refuse(f"--{name}", getattr(options, name), "a length from 1 um to 1 km")
     pressures = None
     if options.confinement is not None:
         if options.test not in ("triaxial", "shear"):
@@ -73,7 +74,7 @@ def options_of(options: argparse.Namespace) -> Options:
         texts = [text.strip() for text in options.confinement.split(",")]
         pressures = tuple(number("confinement", text, "Pa") for text in texts)
         if any(p is None or not 0.0 <= p <= 1e10 or 0.0 < p < 1e3 for p in pressures):
-            raise refuse("--confinement", options.confinement, "pressures of 0, or 1 kPa to 10 GPa", "write the unit")
+            raise refuse("--confinement", options.confinement, "pressures of 0, or 1 kPa to 10 GPa")
     if not 1 <= options.seeds <= MAX_SEEDS:
         raise refuse("--seeds", options.seeds, f"in [1, {MAX_SEEDS}]")
     if options.jobs is not None and options.jobs < 1:
@@ -81,12 +82,12 @@ def options_of(options: argparse.Namespace) -> Options:
     return Options(size=size, dx=dx, confinements=pressures, quick=options.quick)
 
 
-def _plain(text: str) -> bool:
+def _is_nothing(text: str) -> bool:
+    """Whether it is a 0, which needs no unit."""
     try:
-        float(text)
+        return float(text) == 0.0
     except ValueError:
         return False
-    return True
 
 
 def folder_of(options: argparse.Namespace) -> Path:

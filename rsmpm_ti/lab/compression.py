@@ -191,8 +191,10 @@ def envelope(rock: Rock, pressure: np.ndarray, peak: np.ndarray) -> list[Quantit
         phi, cohesion = math.degrees(math.asin((N - 1.0) / (N + 1.0))), ucs / (2.0 * root)
         if known.sum() > 2:
             wide = t.ppf(0.975, known.sum() - 2)
-            error_phi = math.degrees(wide * line.stderr / (root * (N + 1.0)))
-            error_c = wide * math.hypot(line.intercept_stderr / (2.0 * root), ucs * line.stderr / (4.0 * root**3))
+            error_phi = math.degrees(float(wide) * line.stderr / (root * (N + 1.0)))
+            error_c = float(wide) * math.hypot(
+                line.intercept_stderr / (2.0 * root), ucs * line.stderr / (4.0 * root**3)
+            )
     about = f"of a straight line through {int(known.sum())} peaks, with 95 % confidence"
     criterion = rock.criterion
     return [

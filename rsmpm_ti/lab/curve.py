@@ -24,6 +24,9 @@ TANGENT = (0.4, 0.6)
 STRAIGHT = (0.2, 0.8)
 """The same of the average modulus: before cracks, and after what platens bed in."""
 
+ELASTIC = (0.1, 0.35)
+"""The same of the elastic volumetric strain: cracks begin at 0.4 of the peak or later (Martin & Chandler 1994)."""
+
 NOTICED = 0.01
 """Crack volumetric strain over the elastic volumetric strain at the peak from which cracks are noticed, as a strain
 gauge of a laboratory, accurate to a per cent, would."""
@@ -78,12 +81,12 @@ class Curve:
 
     def crack_strain(self) -> np.ndarray:
         """Volumetric strain that is not elastic, dilation negative, [rows]."""
-        return self.volumetric - self.q / self._slope(self.volumetric, self.q, STRAIGHT)
+        return self.volumetric - self.q / self._slope(self.volumetric, self.q, ELASTIC)
 
     def initiation(self) -> float:
         """Stress from which crack volumetric strain grows for good [Pa]; NaN where it never does before the peak."""
         crack = self.crack_strain()
-        limit = NOTICED * abs(self.q[-1] / self._slope(self.volumetric, self.q, STRAIGHT))
+        limit = NOTICED * abs(self.q[-1] / self._slope(self.volumetric, self.q, ELASTIC))
         quiet = np.flatnonzero(~(crack < -limit))
         return math.nan if not len(quiet) or quiet[-1] == len(crack) - 1 else float(self.q[quiet[-1]])
 

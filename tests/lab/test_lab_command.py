@@ -1,0 +1,54 @@
+"""The command of the laboratory: what it lists, what it refuses, and before what."""
+
+import pytest
+
+from rsmpm_ti.lab.__main__ import main
+from rsmpm_ti.lab.catalogue import TESTS
+
+
+def test_list_names_every_test_and_its_standard(capsys):
+    assert main(["--list"]) == 0
+    said = capsys.readouterr().out.splitlines()
+    assert [line.split()[0] for line in said] == list(TESTS)
+    assert all("ISRM" in line or "ASTM" in line or "RILEM" in line for line in said)
+
+
+@pytest.mark.parametrize(
+    ("arguments", "words"),
+    [
+        ([], "name a test"),
+        (["ucx"], "there is no test 'ucx'; the tests are ucs"),
+        (["ucs", "--size", "50"], "--size = '50' is refused"),
+        (["ucs", "--size", "50 MPa"], "--size = '50 MPa' is refused"),
+        (["ucs", "--size=-5cm"], "--size"),
+        (["ucs", "--dx", "0"], "--dx = '0' is refused"),
+        (["ucs", "--confinement", "5MPa"], "but for triaxial and shear"),
+        (["triaxial", "--confinement", "5"], "--confinement = '5' is refused"),
+        (["triaxial", "--confinement", "5MPa,,"], "--confinement"),
+        (["ucs", "--seeds", "0"], "--seeds = 0 is refused"),
+        (["ucs", "--jobs", "0"], "--jobs = 0 is refused"),
+        (["ucs", "--rock", "westerly"], "westerly"),
+        (["ucs", "--rock", "nowhere.toml"], "nowhere.toml"),
+    ],
+)
+def test_what_cannot_be_tested_is_refused_in_a_line(arguments, words, capsys):
+    assert main(arguments) == 2
+    said = capsys.readouterr().err.splitlines()
+    assert len(said) == 1 and words in said[0]
+
+
+@pytest.mark.parametrize("name", list(TESTS))
+def test_check_tells_the_specimens_of_every_test(name, capsys):
+    assert main([name, "--quick", "--seeds", "2", "--rock", "westerly_granite", "--check"]) == 0
+    said = capsys.readouterr().out.splitlines()
+    count = {"triaxial": 4, "shear": 3}.get(name, 1)
+    assert len(said) == 2 * count
+    assert all("particles" in line and "steps" in line for line in said)
+
+
+def test_folder_that_holds_something_is_refused_before_anything_runs(tmp_path, capsys):
+    (tmp_path / "mine.txt").write_text("of the user")
+    assert main(["ucs", "--quick", "--out", str(tmp_path)]) == 2
+    assert "--overwrite" in capsys.readouterr().err
+    assert [path.name for path in tmp_path.iterdir()] == ["mine.txt"]
+    assert main(["ucs", "--quick", "--out", str(tmp_path / "mine.txt")]) == 2
