@@ -5,7 +5,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-SCALES = {"Pa": (1e6, "MPa"), "Pa m^0.5": (1e6, "MPa m^0.5"), "m": (1e3, "mm"), "N/m": (1e3, "kN/m")}
+SCALES = {"Pa": (1e6, "MPa"), "Pa m^0.5": (1e6, "MPa m^0.5"), "m": (1e-3, "mm"), "N/m": (1e3, "kN/m")}
 """Unit -> what it is shown in, and by which it is divided."""
 
 

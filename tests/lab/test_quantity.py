@@ -37,6 +37,7 @@ def test_seed_without_a_value_is_left_out():
         (Quantity(name="E", unit="Pa", value=17e9, about=""), ("17", "GPa")),
         (Quantity(name="nu", unit="1", value=0.25, about=""), ("0.25", "")),
         (Quantity(name="K_Ic", unit="Pa m^0.5", value=1.4e6, about=""), ("1.4", "MPa m^0.5")),
+        (Quantity(name="opening", unit="m", value=2.5e-5, about=""), ("0.025", "mm")),
         (Quantity(name="CD", unit="Pa", value=math.nan, about=""), ("not defined", "")),
     ],
 )
