@@ -78,8 +78,8 @@ SHEAR = LabTest(
     name="shear",
     about="shear strength of intact rock under constant normal stresses",
     method="ASTM D5607; ISRM (2014): Muralha et al., Rock Mech. Rock Eng. 47:291",
-    limits=("stress is uneven along the plane of shear: it is loaded at opposite ends", "walls do not rub",
-            "a block in plane strain"),
+    limits=("walls press on opposite ends, so stress is uneven along the plane and rock may split before it shears: "
+            "cohesion comes out too low", "walls do not rub", "a block in plane strain"),
     plan=plan_shear,
     read=read_shear,
 )  # fmt: skip

@@ -66,11 +66,11 @@ def _at_platen(test: str, one: Measured) -> Doubt | None:
 
 
 def _moving(test: str, one: Measured) -> Doubt | None:
-    """Until the peak: what flies afterwards has no part in it."""
+    """From half of the stored energy on until the peak: what the start and the collapse make move is no part of it."""
     peak, history = one.summary["peak_filtered_strain"], one.history
     before = np.abs(history["axial_strain"]) <= abs(peak) if peak is not None else np.ones(len(history), dtype=bool)
     stored = np.maximum.accumulate(history["energy_elastic_J"])
-    begun = before & (stored > 0.05 * stored.max())
+    begun = before & (stored > 0.5 * stored[before].max())
     if not begun.any():
         return None
     share = float((history["energy_kinetic_J"][begun] / stored[begun]).max())

@@ -6,6 +6,7 @@ from rsmpm_ti.spec.boundaries import Platen
 from rsmpm_ti.spec.domain import Domain
 from rsmpm_ti.spec.load_cell import LoadCell
 from rsmpm_ti.spec.loading_start import Affine
+from rsmpm_ti.spec.quasi_static.servo import Servo
 from rsmpm_ti.spec.regions import Box, Difference, Slit
 from rsmpm_ti.spec.scene import Body, Loading, Output, Scene, Schedule
 from rsmpm_ti.spec.seeding import Jittered, Lattice
@@ -27,6 +28,7 @@ def uniaxial_test(
     speed: float = 2.5e-3,
     time_scale: float | str = 1.0,
     confinement: float = 0.0,
+    servo: Servo | None = None,
     cfl: float = 0.5,
     cell: LoadCell | None = None,
     output: Output | None = None,
@@ -35,9 +37,9 @@ def uniaxial_test(
 
     flaws: slits cut into it, in the plate's coordinates; seeding: Lattice() by default; room: empty grid on both sides
     [m], into which it may bulge and pieces may fly; turn: of the grid against the plate [degrees], whose platens then
-    hold both ways (`Domain.turn`); speed: at which each platen closes in [m/s];
-    a negative one, with a negative strain_end, pulls: direct tension. cell: what is measured; by default the force of
-    both platens over the width.
+    hold both ways (`Domain.turn`); speed: at which each platen closes in [m/s]; a negative one, with a negative
+    strain_end, pulls: direct tension. servo: slows them while rock breaks. cell: what is measured; by default the force
+    of both platens over the width.
     """
     plate = Box(lower=(0.0, 0.0), upper=(width, height))
     glued = speed < 0.0 or turn != 0.0
@@ -52,7 +54,7 @@ def uniaxial_test(
         rock=rock,
         loading=Loading(
             boundaries=platens, start=Affine(), time_scale=time_scale, width=width, confinement=confinement,
-            cell=cell or LoadCell(),
+            servo=servo, cell=cell or LoadCell(),
         ),
         schedule=Schedule(strain_end=strain_end, cfl=cfl),
         transfer=transfer or PicFlip(),

@@ -11,12 +11,13 @@ COARSE = {
     "cube": {"dx": 2e-3, "flaw_width": 6e-3, "time_scale": 20.0},
     "disc": {"dx": 2e-3, "flaw_width": 4e-3, "time_scale": 16.0},
     "intact": {"dx": 5e-3},
-    "cube_lab": {"dx": 1.25e-3, "length": 2.5e-3, "flaw_width": 3.75e-3, "time_scale": 60.0, "strain_end": 7e-4},
+    "cube_lab": {"dx": 1.25e-3, "length": 2.5e-3, "flaw_width": 3.75e-3, "time_scale": 60.0, "strain_end": 7e-4,
+                 "servo": False},
     "disc_lab": {"dx": 1.25e-3, "length": 2.5e-3, "flaw_width": 3.75e-3, "time_scale": 60.0, "strain_end": 2.4e-4},
     "confined": {"dx": 1.25e-3, "length": 2.5e-3, "flaw_width": 3.75e-3, "time_scale": 60.0},
     "two_flaws": {"dx": 1.25e-3, "length": 2.5e-3, "flaw_width": 3.75e-3, "time_scale": 60.0, "strain_end": 7.5e-4},
     "intact_weibull": {"dx": 1.25e-3, "length": 2.5e-3, "time_scale": 80.0, "strain_end": 1.0e-3},
-}
+}  # fmt: skip
 """Keywords of a run of some 5 s that breaks rock, with cells as large as the scene's flaw and material length allow."""
 
 

@@ -11,7 +11,7 @@ from rsmpm_ti.scene import main
 from rsmpm_ti.spec.quasi_static.servo import AUTO_DAMPING, FASTER, SLOWER
 
 QUIET = Output(frames=0, movie=False, vtu=0)
-COARSE = {"dx": 2e-3, "flaw_width": 6e-3, "length": 4e-3}
+COARSE = {"dx": 2e-3, "flaw_width": 6e-3, "length": 4e-3, "servo": False}
 
 
 def slow(**changes):
@@ -69,6 +69,10 @@ def test_auto_holds_while_rock_breaks():
     assert plain.servo is None and plain.local_damping == 0.0
     given = replace(scene, loading=replace(scene.loading, servo=Servo(slowest=1.0), local_damping=0.0))
     assert given.servo.slowest == 1.0 and given.local_damping == 0.0
+
+
+def test_scene_whose_peak_depends_on_the_speed_has_a_servo():
+    assert load_scene("cube_lab").servo == Servo() and load_scene("cube_lab", quick=True).servo is None
 
 
 def test_slower_platens_are_a_smaller_time_scale():
