@@ -17,7 +17,7 @@ SHEET = {
     "sigma_t": (1e6, "MPa", "direct tensile strength"),
     "BTS": (1e6, "MPa", "Brazilian tensile strength"),
     "kind": (None, "", "kind of rock"),
-    "K_Ic": (1e6, "MPa m^0.5", "toughness"),
+    "K_Ic": (1e6, "MPa√m", "toughness"),
     "G_f": (1.0, "J/m²", "fracture energy in tension"),
     "G_f_II": (1.0, "J/m²", "fracture energy in shear"),
     "phi_r": (1.0, "°", "friction angle of broken rock"),
@@ -44,9 +44,10 @@ def quantity_rows(report: dict) -> list[dict]:
             by_sheet = shown(given, one["unit"])
             off = "" if value is None else f"{100.0 * (value / given - 1.0):+.2g} %"
         each = [shown(value, one["unit"]) for value in one["values"]] if len(one["values"]) > 1 else []
+        text = UNDEFINED if value is None else f"{one['shown']} {printed(one['shown_unit'])}".strip()
         rows.append({
-            "name": one["name"], "value": UNDEFINED if value is None else f"{one['shown']} {one['shown_unit']}".strip(),
-            "given": by_sheet, "off": off, "about": one["about"], "each": ", ".join(each),
+            "name": one["name"], "value": text, "given": by_sheet, "off": off, "about": one["about"],
+            "each": ", ".join(each),
         })  # fmt: skip
     return rows
 
@@ -55,7 +56,12 @@ def shown(value: float | None, unit: str) -> str:
     """With its unit, as the value of a `Quantity` is shown."""
     value = known(value)
     text, scaled = Quantity(name="", unit=unit, value=math.nan if value is None else value, about="").shown()
-    return f"{text} {scaled}".strip()
+    return f"{text} {printed(scaled)}".strip()
+
+
+def printed(unit: str) -> str:
+    """Of a `Quantity`, as books print it."""
+    return unit.replace(" m^0.5", "√m").replace("m^2", "m²")
 
 
 def sheet_rows(rock: dict) -> list[dict]:
