@@ -43,7 +43,11 @@ def quantity_rows(report: dict) -> list[dict]:
         if given:
             by_sheet = shown(given, one["unit"])
             off = "" if value is None else f"{100.0 * (value / given - 1.0):+.2g} %"
-        each = [shown(value, one["unit"]) for value in one["values"]] if len(one["values"]) > 1 else []
+        each = (
+            [shown(value, one["unit"]) for value in one["values"]]
+            if len(one["values"]) > 1 and value is not None
+            else []
+        )
         text = UNDEFINED if value is None else f"{one['shown']} {printed(one['shown_unit'])}".strip()
         rows.append({
             "name": one["name"], "value": text, "given": by_sheet, "off": off, "about": one["about"],
