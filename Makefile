@@ -54,7 +54,7 @@ lint: $(STAMP)
 # Each in an environment of its own, built anew: lower bounds of pyproject.toml as they stand, on the oldest Python that is
 # there, and the newest versions within its upper bounds, on the newest Python. pyenv's commands work for those of its
 # versions that are switched on: here for all.
-OTHERS = tests/test_cli.py tests/test_door.py tests/analysis tests/output tests/paint tests/spec tests/run/test_run.py
+OTHERS = tests/test_cli.py tests/test_door.py tests/analysis tests/lab/test_report.py tests/output tests/paint tests/spec tests/run/test_run.py
 BOUNDS = sed -n 's/^ *"\([A-Za-z0-9_-]*\)>=\([0-9.]*\),.*/\1==\2/p' pyproject.toml
 
 versions: oldest newest

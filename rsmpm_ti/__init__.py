@@ -17,8 +17,8 @@ from rsmpm_ti.ctrl_c import leave_in_a_line, module_of
 __version__ = "0.1.0"
 
 NEEDED = (
-    "taichi numpy scipy matplotlib cmcrameri PIL fpng meshio rich lazy_loader pydantic annotated_types pint".split()
-)
+    "taichi numpy scipy matplotlib cmcrameri PIL fpng meshio rich jinja2 lazy_loader pydantic annotated_types pint"
+).split()
 NEEDED += ["tomli"] if sys.version_info < (3, 11) else []
 """Modules without which no command works; they are those of pyproject.toml but for those of movies and of outlines."""
 

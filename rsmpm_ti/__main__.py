@@ -7,6 +7,7 @@ from rsmpm_ti.process import command, tell
 
 COMMANDS = {
     "scene": ("rsmpm_ti.scene", "load a rock specimen, break it, and write pictures, curve, events and particle data"),
+    "lab": ("rsmpm_ti.lab.__main__", "a standard test of a rock: specimens are run, and a report is written"),
     "verify": ("rsmpm_ti.verify.__main__", "hold the solver against exact solutions, finite elements, published data"),
     "hardcases": (
         "rsmpm_ti.hardcases.__main__",

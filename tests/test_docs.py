@@ -18,6 +18,7 @@ from rsmpm_ti.cases.running import run_case
 from rsmpm_ti.errors import SceneError
 from rsmpm_ti.scene import build, parser
 from rsmpm_ti.spec.library.places import available
+from rsmpm_ti.spec.library.rocks import rocks
 
 ROOT = Path(__file__).resolve().parent.parent
 PAGES = [ROOT / "README.md", ROOT / "CONTRIBUTING.md", *sorted((ROOT / "docs").glob("*.md"))]
@@ -70,9 +71,9 @@ def test_readme_is_short():
     assert (ROOT / "README.md").stat().st_size <= README_BYTES
 
 
-def test_readme_shows_one_picture_and_one_that_moves():
+def test_readme_shows_two_pictures_and_one_that_moves():
     pictures = re.findall(r"!\[[^]]*\]\(([^)]+)\)", (ROOT / "README.md").read_text(encoding="utf-8"))
-    assert len(pictures) == 2
+    assert len(pictures) == 3
     moving = [path for path in pictures if Path(path).suffix in (".gif", ".webp")]
     assert len(moving) == 1 and (ROOT / moving[0]).stat().st_size < MOVING_BYTES
     with Image.open(ROOT / moving[0]) as picture:
@@ -157,10 +158,12 @@ def test_modules_of_commands_are_there(module):
 
 
 def known_names(module: str) -> set[str]:
-    """What may follow a command as a word: cases, studies, measurements."""
+    """What may follow a command as a word: cases, studies, measurements, standard tests and their rocks."""
     if module == "rsmpm_ti.bench":
         return {"speed", "passes", "scaling", "fill", "memory", "start", "runs", "error", *available()}
     catalogue = importlib.import_module(f"{module}.catalogue")
+    if module == "rsmpm_ti.lab":
+        return {*catalogue.TESTS, *rocks()}
     return set(getattr(catalogue, "CASES", None) or catalogue.STUDIES)
 
 
@@ -197,7 +200,9 @@ def test_options_named_apart_belong_to_some_command(capsys):
     known += "".join(
         help_of("rsmpm_ti.bench", [part], capsys) for part in known_names("rsmpm_ti.bench") - {*available()}
     )
-    lines = [line for page in PAGES for line in code_of(page) if not re.search(r"ruff|pytest|make|-march", line)]
+    lines = [
+        line for page in PAGES for line in code_of(page) if not re.search(r"ruff|pytest|make|chromium|-march", line)
+    ]
     options = {option for line in lines for option in re.findall(r"(?<![\w-])--[a-z][a-z-]+", line)}
     assert sorted(option for option in options if not re.search(rf"{option}\b", known)) == []
 

@@ -68,7 +68,7 @@ def test_commands_are_listed_and_run(capsys):
     assert all(re.search(rf"^  {name} +\S", listed, re.MULTILINE) for name in COMMANDS)
     assert main(["scene", "--list"]) == 0 and "cube_lab" in capsys.readouterr().out
     assert main(["verify", "--list"]) == 0 and "slit_field" in capsys.readouterr().out
-    assert main(["nonsense"]) == 2 and "there are scene, verify" in capsys.readouterr().err
+    assert main(["nonsense"]) == 2 and "there are scene, lab, verify" in capsys.readouterr().err
 
 
 def test_console_command_is_the_same():

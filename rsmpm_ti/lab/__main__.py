@@ -137,6 +137,7 @@ def main(arguments: list[str] | None = None) -> int:
 
 def run(test, sheet, asked: Options, specimens, out: Path, options, arguments: list[str]) -> int:
     from rsmpm_ti.lab.record import report_of, write_records
+    from rsmpm_ti.lab.report.page import write_page
     from rsmpm_ti.lab.running import read_back, run_all
 
     cores = os.cpu_count() or 1
@@ -156,6 +157,7 @@ def run(test, sheet, asked: Options, specimens, out: Path, options, arguments: l
     quantities = over_seeds([test.read(seed) for seed in measured])
     report = report_of(test, sheet, asked, [command_of(arguments)], measured, quantities)
     write_records(out, report)
+    write_page(out, report, measured)
     print(table(report))
     print(f"written to {out}")
     return 0 if report["valid"] else 1

@@ -9,6 +9,8 @@ from rsmpm_ti.lab.standard import LabTest, Measured, Options
 from rsmpm_ti.lab.validity import Doubt, doubts_of
 from rsmpm_ti.records.files import write_csv, write_json
 from rsmpm_ti.rock.sheet.data_sheet import DataSheet
+from rsmpm_ti.spec.review.machine import machine
+from rsmpm_ti.spec.scene import Scene
 
 SAID = (
     "peak_filtered_Pa", "first_failure_stress_Pa", "onset_stress_Pa", "time_scale", "least_pace", "particles", "steps",
@@ -26,13 +28,14 @@ def report_of(
     doubts = [doubt for seed in measured for one in seed for doubt in doubts_of(test.name, one)]
     return {
         "rsmpm_ti": __version__,
+        "machine": machine(),
         "test": test.name,
         "about": test.about,
         "method": test.method,
         "limits": list(test.limits),
         "valid": not any(doubt.grave for doubt in doubts),
         "doubts": [_doubt(doubt) for doubt in doubts],
-        "rock": _rock(sheet),
+        "rock": _rock(sheet, measured[0][0].specimen.scene.domain.dx),
         "options": {"size_m": options.size, "dx_m": options.dx, "confinements_Pa": options.confinements,
                     "quick": options.quick, "seeds": len(measured)},
         "commands": commands,
@@ -45,10 +48,11 @@ def _doubt(doubt: Doubt) -> dict:
     return {"run": doubt.label, "grave": doubt.grave, "sentence": doubt.sentence}
 
 
-def _rock(sheet: DataSheet) -> dict:
+def _rock(sheet: DataSheet, dx: float) -> dict:
     from dataclasses import fields
 
-    return {one.name: getattr(sheet, one.name) for one in fields(sheet)} | {"sources": dict(sheet.sources)}
+    held = {one.name: getattr(sheet, one.name) for one in fields(sheet)}
+    return held | {"sources": dict(sheet.sources), "derived": sheet.derived(dx), "doubts": sheet.doubts(dx)}
 
 
 def _quantity(quantity: Quantity) -> dict:
@@ -64,8 +68,21 @@ def _run(one: Measured) -> dict:
     return {
         "label": one.specimen.label, "about": one.specimen.about, "title": one.specimen.scene.title,
         "dx_m": one.specimen.scene.domain.dx, "facts": one.specimen.facts,
-        "folder": f"runs/{one.specimen.label}", "warnings": one.summary["warnings"],
+        "folder": f"runs/{one.specimen.label}", "scene": _scene(one.specimen.scene),
+        "warnings": one.summary["warnings"],
         "numbers": {name: one.summary.get(name) for name in SAID},
+    }  # fmt: skip
+
+
+def _scene(scene: Scene) -> dict:
+    """How it is computed; all of it is in the run's scene.json."""
+    loading = scene.loading
+    return {
+        "shape": repr(scene.shape), "transfer": repr(scene.transfer), "order": scene.order, "dt_s": scene.dt,
+        "grid_turn_deg": scene.domain.turn, "seeding": [repr(body.seeding) for body in scene.bodies],
+        "boundaries": [type(boundary).__name__ for boundary in loading.boundaries],
+        "confinement_Pa": loading.confinement, "servo": scene.servo is not None,
+        "local_damping": scene.local_damping, "plane_stress": scene.rock.elasticity.plane_stress,
     }  # fmt: skip
 
 

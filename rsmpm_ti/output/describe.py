@@ -30,7 +30,7 @@ digits. A name with `{axis}` stands for one column for each axis: x, y and in 3D
 | file | what it is |
 |---|---|
 | `frames/stress_0000.png`, ... | maximum principal stress, tension red; the inset is the load curve so far |
-| `frames/cracks_0000.png`, ... | what has failed, and how |
+| `frames/cracks_0000.png`, ... | what has failed, and how; each frame has its time in the file, as a note `time_s` |
 | `frames/margin_0000.png`, ... | how near the rock is to failure; with `--margin` |
 | `NAME.mp4` | cracks on the left, stress on the right, of all frames |
 | `summary.png` | the load curve with acoustic events; the cracks at the largest load and at the end |

@@ -8,7 +8,7 @@ from rsmpm_ti.output.files import frame_name
 from rsmpm_ti.output.pictures import Commission
 from rsmpm_ti.paint.figure import FramePainter
 from rsmpm_ti.paint.movie import Movie
-from rsmpm_ti.paint.png import read_png, write_png
+from rsmpm_ti.paint.png import TIME_NOTE, read_png, write_png
 from rsmpm_ti.paint.summary_picture import summary_picture
 from rsmpm_ti.records.snapshot import Pattern, Snapshot
 
@@ -31,9 +31,10 @@ class Gallery:
         """Frames by kind, for `write`."""
         return {kind: painter.paint(snapshot, history, number) for kind, painter in self.painters.items()}
 
-    def write(self, kind: str, number: int, image: np.ndarray) -> None:
-        """A frame to its file."""
-        write_png(self._out / frame_name(kind, number), image, painter=self._wanted.painters["backend"])
+    def write(self, kind: str, number: int, image: np.ndarray, time: float) -> None:
+        """A frame to its file, with a note of its time [s]."""
+        notes = {"painter": self._wanted.painters["backend"], TIME_NOTE: f"{time:.10g}"}
+        write_png(self._out / frame_name(kind, number), image, **notes)
 
     def refilm(self, numbers: list[int]) -> None:
         """Begin the movie with frames of a run that goes on, from their files, without those that are damaged."""

@@ -51,9 +51,10 @@ class Desk:
         self._later(self.gallery.refilm, numbers)
 
     def frame(self, number: int, readout, history) -> None:
-        images = self.gallery.paint(number, readout.snapshot(), history)
+        snapshot = readout.snapshot()
+        images = self.gallery.paint(number, snapshot, history)
         for kind, image in images.items():
-            self._later(self.gallery.write, kind, number, image)
+            self._later(self.gallery.write, kind, number, image, snapshot.time)
         self._later(self.gallery.film, images["stress"], images["cracks"])
 
     def vtu(self, entries, readout, instant) -> None:

@@ -13,6 +13,9 @@ from rsmpm_ti.records.files import complete
 NOTES_AT = 33
 """Bytes of the signature and of the first chunk, which must be IHDR; others may follow in any order."""
 
+TIME_NOTE = "time_s"
+"""Key of the note that says at what time of its run a frame was [s]."""
+
 
 def write_png(path: str | os.PathLike, image: np.ndarray, **notes: str) -> Path:
     """Writes uint8 [h, w, 3] under its name only when complete; notes go into the file as text (Latin-1).

@@ -111,9 +111,10 @@ SUMMARY = Table(
 
 RECORD = Table(
     file="scene.json",
-    about="What was run. `scene scene.json` runs it again; nothing in it is executed. An object of a class that the "
-    "scene file brought is told by its class and, under `own`, by what it holds (`unrecorded`: what no file can hold); "
-    "such a record is refused: run the scene file again.",
+    about="What was run. `scene scene.json` runs it again; nothing in it is executed. Of an image or a mesh it holds "
+    "the name and the SHA-256 of the file, which must be there ([drawings.md](drawings.md#what-the-record-holds)). An "
+    "object of a class that the scene file brought is told by its class and, under `own`, by what it holds "
+    "(`unrecorded`: what no file can hold); such a record is refused: run the scene file again.",
     columns=(
         _key("rsmpm_ti", "", "version of the program"),
         _key("name", "", "name of the run"),

@@ -146,7 +146,7 @@ def test_gallery_writes_margin_frames_only_when_asked(tmp_path, margin):
     (tmp_path / "frames").mkdir()
     gallery = Gallery(commission(scene, "cube", tmp_path, 5e-3))
     for kind, image in gallery.paint(0, snapshot_of(x), NO_ROWS).items():
-        gallery.write(kind, 0, image)
+        gallery.write(kind, 0, image, 0.0)
     gallery.close(snapshot_of(x), NO_ROWS, [], np.zeros(0))
     names = ["cracks_0000.png", *(["margin_0000.png"] if margin else []), "stress_0000.png"]
     assert sorted(path.name for path in (tmp_path / "frames").iterdir()) == names
