@@ -5,13 +5,16 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from rsmpm_ti.lab.bending import characteristic_length, energy_of
+from rsmpm_ti.lab.bending import NOTCH, characteristic_length, energy_of, work_of_fracture
 from rsmpm_ti.lab.compression import final_strain
 from rsmpm_ti.lab.standard import Measured
 
 MAX_KINETIC, MAX_ENERGY, CELLS_IN_ZONE, MAX_SCALE_ERROR = 0.05, 0.01, 4.0, 0.98
 """Kinetic over stored energy up to the peak; energy that is not accounted for, over the work; cells in the process
 zone, half of l_ch for a linear softening (Hillerborg et al. 1976); fraction of the strain at which a peak is one."""
+
+DEEP = 2.5
+"""Ligament over the length of the process zone from which linear fracture mechanics reads a toughness: ASTM E399."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -25,7 +28,7 @@ class Doubt:
 
 def doubts_of(test: str, one: Measured) -> list[Doubt]:
     """All of one specimen, the grave ones first."""
-    checks = (_no_peak, _peak_at_end, _off_centre, _at_platen, _moving, _energy, _coarse, _parted)
+    checks = (_no_peak, _peak_at_end, _off_centre, _at_platen, _moving, _energy, _coarse, _parted, _shallow, _load_left)
     found = [doubt for check in checks if (doubt := check(test, one)) is not None]
     return sorted(found, key=lambda doubt: not doubt.grave)
 
@@ -96,6 +99,27 @@ def _coarse(test: str, one: Measured) -> Doubt | None:
         return None
     return _doubt(one, False, f"the process zone, E' G_f/(2 sigma_t^2), is {cells:.2g} cells: below {CELLS_IN_ZONE:g} "
                               f"cracks follow the cells; take a smaller --dx")  # fmt: skip
+
+
+def _shallow(test: str, one: Measured) -> Doubt | None:
+    """By the load at the peak toughness comes out as that of a large specimen only if the process zone is small."""
+    size = one.specimen.facts.get("height")
+    if test not in ("bend", "scb") or size is None:
+        return None
+    lengths = NOTCH * size / characteristic_length(one.specimen.scene.rock)
+    if not lengths < DEEP:
+        return None
+    below = f"below {DEEP:g} the toughness by the peak load is that of this size"
+    return _doubt(one, False, f"the ligament is {lengths:.2g} times E' G_f/sigma_t^2: {below}")
+
+
+def _load_left(test: str, one: Measured) -> Doubt | None:
+    """The work of fracture is that of a specimen that is broken through."""
+    if test not in ("bend", "scb") or not math.isnan(work_of_fracture(one)):
+        return None
+    load = one.history["force_top_N"]
+    left = 100.0 * load[-1] / load.max()
+    return _doubt(one, False, f"{left:.0f} % of the largest load is left at the end: the work of fracture is not read")
 
 
 def _parted(test: str, one: Measured) -> Doubt | None:

@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 
 from rsmpm_ti import Rock
+from rsmpm_ti.lab.bending import plan_bend
 from rsmpm_ti.lab.standard import Measured, Options, Specimen
 from rsmpm_ti.lab.tension import plan_brazilian
 from rsmpm_ti.lab.validity import doubts_of
@@ -69,6 +70,22 @@ def test_cells_that_are_too_coarse_for_the_process_zone_are_said():
     assert any("process zone" in doubt.sentence for doubt in doubts_of("ucs", measured(scene)))
     finer = uniaxial_test(title="t", rock=rock, dx=5e-3, strain_end=5e-3, width=60e-3, height=120e-3)
     assert doubts_of("ucs", measured(finer)) == []
+
+
+def test_beam_that_is_not_broken_through_has_no_work_of_fracture():
+    """Two lengths l_ch deep, with a notch of half of that: its ligament is one length."""
+    (one,) = plan_bend(DataSheet(**STRONG), Options(quick=True), 1)
+    found = replace(measured(one.scene), specimen=one)
+    found.summary["peak_filtered_strain"] = 0.5 * one.scene.schedule.strain_end
+    load = np.where(found.history["axial_strain"] < 3e-3, found.history["axial_strain"], 1e-3)
+    names = [*found.history.dtype.names, "force_top_N"]
+    history = np.zeros(100, dtype=[(name, float) for name in names])
+    for name in names:
+        history[name] = load if name == "force_top_N" else found.history[name]
+    said = " ".join(doubt.sentence for doubt in doubts_of("bend", replace(found, history=history)))
+    assert "34 % of the largest load is left" in said and "the ligament is 1 times" in said
+    history["force_top_N"][-1] = 0.0
+    assert "is left" not in " ".join(d.sentence for d in doubts_of("bend", replace(found, history=history)))
 
 
 def test_disc_that_breaks_beside_the_jaws_is_no_brazilian_test():
