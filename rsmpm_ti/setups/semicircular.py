@@ -6,7 +6,7 @@ import numpy as np
 
 from rsmpm_ti.errors import refuse
 from rsmpm_ti.rock.rock import Rock
-from rsmpm_ti.setups.bending import NOTCH, REACH, ROLLER, plane_modulus
+from rsmpm_ti.setups.bending import NOTCH, ROLLER, plane_modulus
 from rsmpm_ti.setups.slow import slow_time_scale
 from rsmpm_ti.spec.boundaries import Platen
 from rsmpm_ti.spec.domain import Domain
@@ -25,9 +25,16 @@ Rock Eng. 47:267, table 1: 0.5 to 0.8, and 0.4 to 0.6."""
 CORNERS = 721
 """Of the arc: its chords lie within 1e-6 radii of it."""
 
-STIFFNESS = 0.045
+STIFFNESS = 0.096
 """Load per thickness over plane modulus and deflection of half a disc with a notch of half its radius, supports at 0.8
-diameters: of the solver's own elastic run (`tests/setups/test_semicircular.py` holds it to finite elements)."""
+diameters: of finite elements (quadratic, 40 x 40 on a quarter) with rollers a twentieth of the radius wide. Only the
+pace of the test follows from it.
+
+The same elements give K_I 3.3 % below `stress_intensity`, and 2.2 % with rollers half as wide: these take a little of
+the bending."""
+
+REACH = 8.0
+"""Deflection at the end over that at which the toughness is expected to be reached."""
 
 
 def semicircular_test(
