@@ -30,8 +30,12 @@ def calibrate(
     measure: the laboratory, or what stands in for it; what it found before is kept in `out` and used again.
     Raises SceneError where files cannot be used.
     """  # fmt: skip
-    out.mkdir(parents=True, exist_ok=True)
-    evaluations = Evaluations(wanted, sheet, measure, out, lambda one: (write_table(out, evaluations), say(one)))
+
+    def told(one: Evaluation) -> None:
+        write_table(out, evaluations)
+        say(one)
+
+    evaluations = Evaluations(wanted, sheet, measure, out, told)
     own = np.array([p.place(own_value(sheet, p.key)) for p in wanted.parameters])
     start = start_of(evaluations, own)
     if start is None:

@@ -54,6 +54,7 @@ class Evaluations:
         self.limit = wanted.runs
         self.done: dict[tuple[float, ...], Evaluation] = {}
         self._code = code()
+        (folder / FOLDER).mkdir(parents=True, exist_ok=True)  # by it the folder is known again, whenever a kill comes
 
     def at(self, place: np.ndarray) -> Evaluation:
         """That of a place, [parameters] in [0, 1]. Raises Spent where it would be one beyond `limit`."""

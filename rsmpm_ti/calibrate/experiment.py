@@ -12,13 +12,12 @@ from rsmpm_ti.calibrate.targets.measured import Found, Wanted
 from rsmpm_ti.calibrate.targets.names import AT, CURVES
 from rsmpm_ti.errors import FULL, RockWarning, SceneError
 from rsmpm_ti.lab.catalogue import TESTS
-from rsmpm_ti.lab.compression import pressures_of
+from rsmpm_ti.lab.compression import PRESSURES
 from rsmpm_ti.lab.quantity import over_seeds
 from rsmpm_ti.lab.running import read_back, run_all
 from rsmpm_ti.lab.shear import STRESSES
 from rsmpm_ti.lab.standard import Measured, Options, Specimen
 from rsmpm_ti.records.history_table import nominal_stress
-from rsmpm_ti.rock.rock import Rock
 from rsmpm_ti.rock.sheet.data_sheet import DataSheet
 from rsmpm_ti.spec.scene import Output
 
@@ -40,9 +39,8 @@ def with_pressures(wanted: Wanted, sheet: DataSheet) -> Wanted:
     pressures = dict(wanted.confinements)
     for test in AT:
         if test in wanted.tests and test not in pressures:
-            rock = Rock.from_sheet(sheet)
-            own = tuple(float(f"{part * rock.criterion.ucs:.2g}") for part in STRESSES)
-            pressures[test] = own if test == "shear" else pressures_of(rock, Options())
+            parts = PRESSURES if test == "triaxial" else STRESSES
+            pressures[test] = tuple(float(f"{part * sheet.compressive_strength:.2g}") for part in parts)
     return replace(wanted, confinements=pressures)
 
 

@@ -40,7 +40,6 @@ def key_of(sheet: DataSheet, wanted: Wanted, code: str) -> str:
 
 def keep(folder: Path, key: str, values: dict[str, float], found: Found) -> None:
     """values: of the parameters, for the reader."""
-    folder.mkdir(parents=True, exist_ok=True)
     curves = {test: {"strain": strain.tolist(), "stress_Pa": stress.tolist()}
               for test, (strain, stress) in found.curves.items()}  # fmt: skip
     write_json(folder / f"{key}.json", {

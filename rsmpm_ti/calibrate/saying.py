@@ -12,6 +12,12 @@ from rsmpm_ti.lab.standard import Specimen
 from rsmpm_ti.rock.sheet.data_sheet import DataSheet
 from rsmpm_ti.rock.sheet.reading import displayed
 
+STARTED = 25.0
+"""Of a run, what its process, kernels and records take of a core [s], on that of docs/speed.md."""
+
+SLOWED = 2.0
+"""Steps of a run over those of platens that nothing slows; about that in the tension of granite."""
+
 
 def task(wanted: Wanted, sheet: DataSheet) -> str:
     """Parameters with their bounds and starts, targets with their errors."""
@@ -36,12 +42,12 @@ def estimate(wanted: Wanted, plan: dict[str, list[list[Specimen]]], cores: int) 
         for one in (one for seed in seeds for one in seed):
             scene = one.scene
             count = sum(len(body.x) for body in scene.particles())
-            seconds += solving_time(scene, count, 1)
+            seconds += STARTED + SLOWED * solving_time(scene, count, 1)
             lines.append(f"  run {one.label}: {count} particles, {scene.steps} steps")
     each = seconds / min(cores, len(lines))
     lines.append(
-        f"an evaluation is {len(lines)} runs, about {duration(each)} of solving on {cores} free cores, more where much "
-        f"cracks; at most {wanted.runs} evaluations, {duration(each * wanted.runs)}"
+        f"an evaluation is {len(lines)} runs, about {duration(each)} on {cores} free cores; "
+        f"at most {wanted.runs} evaluations, {duration(each * wanted.runs)}"
     )
     return "\n".join(lines)
 

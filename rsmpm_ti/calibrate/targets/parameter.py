@@ -2,6 +2,7 @@
 
 import math
 from dataclasses import dataclass, replace
+from typing import Any
 
 from rsmpm_ti.checks import annotations, unit_of
 from rsmpm_ti.errors import SceneError
@@ -78,5 +79,6 @@ def with_values(sheet: DataSheet, values: dict[str, float], why: str = "") -> Da
     gone = {INSTEAD[key] for key in values if key in INSTEAD}
     estimated = tuple(key for key in KEYS if key in values or (key in sheet.estimated and key not in gone))
     sources = [(key, text) for key, text in sheet.sources if key not in gone | values.keys()]
-    given = dict.fromkeys(sorted(gone), None) | values
-    return replace(sheet, estimated=estimated, sources=(*sources, *((key, why) for key in values if why)), **given)
+    about = {"estimated": estimated, "sources": (*sources, *((key, why) for key in values if why))}
+    given: dict[str, Any] = dict.fromkeys(sorted(gone), None) | values | about
+    return replace(sheet, **given)
