@@ -29,11 +29,12 @@ def parser() -> argparse.ArgumentParser:
 def folder_of(options: argparse.Namespace) -> Path:
     """Raises SceneError for a folder that holds something else than a calibration."""
     from rsmpm_ti.calibrate.kept import FOLDER
+    from rsmpm_ti.output.lock import FILE as LOCK
 
     out = Path(options.out) if options.out else Path("renders") / "calibrate" / Path(options.to).stem
     if out.exists() and not out.is_dir():
         raise refuse("--out", str(out), "a folder")
-    if out.is_dir() and any(out.iterdir()) and not (out / FOLDER).is_dir():
+    if out.is_dir() and any(path.name != LOCK for path in out.iterdir()) and not (out / FOLDER).is_dir():
         raise refuse("--out", str(out), "a new or empty folder, or one of an earlier calibration")
     return out
 

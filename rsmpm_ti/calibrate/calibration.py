@@ -13,6 +13,7 @@ from rsmpm_ti.calibrate.record import Calibration, write_records, write_table
 from rsmpm_ti.calibrate.targets.measured import Wanted
 from rsmpm_ti.calibrate.targets.parameter import own_value
 from rsmpm_ti.calibrate.uncertainty import Uncertainty, uncertainty_of
+from rsmpm_ti.output.lock import Lock
 from rsmpm_ti.rock.sheet.data_sheet import DataSheet
 
 
@@ -28,8 +29,14 @@ def calibrate(
     """Fit the wanted parameters of a sheet; None where no evaluation came to an end. Writes the records to `out`.
 
     measure: the laboratory, or what stands in for it; what it found before is kept in `out` and used again.
-    Raises SceneError where files cannot be used.
+    Raises SceneError where files cannot be used, or another process has the folder.
     """  # fmt: skip
+    out.mkdir(parents=True, exist_ok=True)
+    with Lock(out):
+        return _calibrate(sheet, wanted, measure, out, command, say)
+
+
+def _calibrate(sheet, wanted: Wanted, measure: Laboratory, out: Path, command: str, say) -> Calibration | None:
 
     def told(one: Evaluation) -> None:
         write_table(out, evaluations)

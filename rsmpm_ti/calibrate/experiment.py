@@ -10,7 +10,7 @@ import numpy as np
 
 from rsmpm_ti.calibrate.targets.measured import Found, Wanted
 from rsmpm_ti.calibrate.targets.names import AT, CURVES
-from rsmpm_ti.errors import FULL, RockWarning, SceneError
+from rsmpm_ti.errors import RockWarning, SceneError
 from rsmpm_ti.lab.catalogue import TESTS
 from rsmpm_ti.lab.compression import PRESSURES
 from rsmpm_ti.lab.quantity import over_seeds
@@ -19,6 +19,7 @@ from rsmpm_ti.lab.shear import STRESSES
 from rsmpm_ti.lab.standard import Measured, Options, Specimen
 from rsmpm_ti.records.history_table import nominal_stress
 from rsmpm_ti.rock.sheet.data_sheet import DataSheet
+from rsmpm_ti.spec.review.sentences import review
 from rsmpm_ti.spec.scene import Output
 
 Laboratory = Callable[[DataSheet, Path], Found]
@@ -51,6 +52,8 @@ def planned(wanted: Wanted, sheet: DataSheet) -> dict[str, list[list[Specimen]]]
         options = Options(quick=True, confinements=wanted.confinements.get(test))
         seeds = [TESTS[test].plan(sheet, options, seed) for seed in range(1, wanted.seeds + 1)]
         plan[test] = [[_plain(one, test) for one in seed] for seed in seeds]
+        for one in (one for seed in plan[test] for one in seed):
+            review(one.scene, one.scene.particles())  # what a run would refuse of a scene is refused here
     return plan
 
 
@@ -62,7 +65,7 @@ def _plain(one: Specimen, test: str) -> Specimen:
 def laboratory(wanted: Wanted, jobs: int | None = None) -> Laboratory:
     """That of this package. jobs: specimens at a time, by default as many as processors.
 
-    Its Found tells problems of the rock; it raises SceneError for those of the disk.
+    Its Found tells problems of the rock, which then are kept; it raises SceneError for those of the machine.
     """
 
     def measure(sheet: DataSheet, folder: Path) -> Found:
@@ -77,8 +80,8 @@ def laboratory(wanted: Wanted, jobs: int | None = None) -> Laboratory:
         seconds = 0.0
         folder.mkdir(parents=True, exist_ok=True)
         for done in run_all(every, folder, jobs=at_once, threads=max(1, cores // at_once), resume=True):
-            if any(full in done.problem for full in FULL):
-                raise SceneError(f"{done.label}: {done.problem}; make room, and run it again: what is kept is used")
+            if done.problem and not done.unstable:
+                raise SceneError(f"{done.label}: {done.problem}; then run it again: evaluations are kept")
             if done.problem:
                 return Found(problem=f"{done.label}: {done.problem}", seconds=seconds)
             seconds += done.seconds

@@ -9,8 +9,12 @@ import pytest
 from fake_laboratory import GRANITE, NAN, FakeLaboratory, measured, wanted
 
 from rsmpm_ti.calibrate.calibration import calibrate
+from rsmpm_ti.calibrate.experiment import laboratory
 from rsmpm_ti.calibrate.targets.measured import Curve, Found
 from rsmpm_ti.calibrate.targets.parameter import with_values
+from rsmpm_ti.errors import SceneError
+from rsmpm_ti.lab.running import Done
+from rsmpm_ti.output.lock import FILE, Lock
 from rsmpm_ti.rock.sheet.reading import read_sheet
 
 E_AND_UCS = {"E": (20e9, 90e9), "UCS": (60e6, 300e6)}
@@ -96,6 +100,27 @@ def test_other_targets_use_what_is_kept_and_other_code_does_not(tmp_path, monkey
     monkeypatch.setattr("rsmpm_ti.calibrate.evaluations.code", lambda: "changed")
     calibrate(GRANITE, wanted(E_AND_UCS, targets), measure=other, out=tmp_path)
     assert other.calls
+
+
+def test_folder_is_of_one_calibration_at_a_time(tmp_path):
+    asked = wanted(E_AND_UCS, measured(GRANITE, MODULUS, STRENGTH))
+    with Lock(tmp_path), pytest.raises(SceneError, match="another process|process .* has"):
+        calibrate(GRANITE, asked, measure=FakeLaboratory(), out=tmp_path)
+    calibrate(GRANITE, asked, measure=FakeLaboratory(), out=tmp_path)
+    assert not (tmp_path / FILE).exists()
+
+
+def test_trouble_of_the_machine_is_no_failure_of_the_rock(tmp_path, monkeypatch):
+    """A full disk ends the calibration; an unstable specimen is a point that failed. Only the latter is kept."""
+    asked = wanted(E_AND_UCS, measured(GRANITE, STRENGTH))
+    done = Done("ucs_seed1", 1.0, "unstable at step 7", unstable=True)
+    monkeypatch.setattr("rsmpm_ti.calibrate.experiment.run_all", lambda *_, **__: iter([done]))
+    assert laboratory(asked)(GRANITE, tmp_path).problem == "ucs_seed1: unstable at step 7"
+    done = Done("ucs_seed1", 1.0, "no space left on the disk")
+    monkeypatch.setattr("rsmpm_ti.calibrate.experiment.run_all", lambda *_, **__: iter([done]))
+    with pytest.raises(SceneError, match="no space left"):
+        calibrate(GRANITE, asked, measure=laboratory(asked), out=tmp_path / "full")
+    assert list((tmp_path / "full" / "evaluations").iterdir()) == []
 
 
 def test_damaged_evaluation_is_run_again(tmp_path):
