@@ -14,6 +14,7 @@ FILE = "convergence.png"
 
 def draw(out: Path, calibration: Calibration, evaluations: Evaluations) -> None:
     from matplotlib.figure import Figure
+    from matplotlib.ticker import MaxNLocator
 
     wanted, done = calibration.wanted, list(evaluations.done.values())
     number = np.array([one.number for one in done])
@@ -43,5 +44,6 @@ def draw(out: Path, calibration: Calibration, evaluations: Evaluations) -> None:
     below.set_ylabel("place between the bounds")
     below.set_ylim(-0.03, 1.03)
     below.legend(frameon=False, ncols=len(wanted.parameters), loc="upper center")
+    below.xaxis.set_major_locator(MaxNLocator(integer=True))
     with complete(out / FILE) as part:
         figure.savefig(part)

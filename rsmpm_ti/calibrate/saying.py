@@ -3,6 +3,7 @@
 import math
 
 from rsmpm_ti.calibrate.evaluations import Evaluation
+from rsmpm_ti.calibrate.fit import EDGE
 from rsmpm_ti.calibrate.record import Calibration
 from rsmpm_ti.calibrate.targets.measured import Curve, Wanted
 from rsmpm_ti.calibrate.targets.parameter import own_value
@@ -24,8 +25,10 @@ def task(wanted: Wanted, sheet: DataSheet) -> str:
     lines = [f"rock: {sheet.name}"]
     for parameter in wanted.parameters:
         own = own_value(sheet, parameter.key)
-        outside = "" if 0.0 <= parameter.place(own) <= 1.0 else ", outside: it starts at the nearer bound"
-        lines.append(f"  fit {described(parameter)}; the sheet has {displayed(parameter.key, own)}{outside}")
+        place = parameter.place(own)
+        start = min(max(place, EDGE), 1.0 - EDGE)
+        moved = "" if start == place else f", the start is {displayed(parameter.key, parameter.at(start))}"
+        lines.append(f"  fit {described(parameter)}; the sheet has {displayed(parameter.key, own)}{moved}")
     for target in wanted.targets:
         lines.append(f"  to  {target.said()}{f' ({100.0 * ASSUMED:g} %: the file gives none)' * target.assumed}")
     for test, pressures in wanted.confinements.items():
@@ -46,7 +49,7 @@ def estimate(wanted: Wanted, plan: dict[str, list[list[Specimen]]], cores: int) 
             lines.append(f"  run {one.label}: {count} particles, {scene.steps} steps")
     each = seconds / min(cores, len(lines))
     lines.append(
-        f"an evaluation is {len(lines)} runs, about {duration(each)} on {cores} free cores; "
+        f"an evaluation is {len(lines)} run{'s' * (len(lines) > 1)}, about {duration(each)} on {cores} free cores; "
         f"at most {wanted.runs} evaluations, {duration(each * wanted.runs)}"
     )
     return "\n".join(lines)

@@ -1,13 +1,21 @@
 """Files of targets that are wrong: each is one line that names the key, before anything runs."""
 
 import os
+import re
+from pathlib import Path
 
 import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
 
 from rsmpm_ti.calibrate.__main__ import main
 from rsmpm_ti.calibrate.targets.measured import Curve
 from rsmpm_ti.calibrate.targets.reading import read_wanted
+from rsmpm_ti.errors import SceneError
 from rsmpm_ti.rock.sheet.toml_file import MAX_BYTES
+
+PAGE = Path(__file__).resolve().parents[2] / "docs" / "calibrate.md"
+EXAMPLE = re.search(r"```toml\n(.*?)```", PAGE.read_text(encoding="utf-8"), re.DOTALL)[1]
 
 PARAMETERS = '[parameters]\nE = ["20 GPa", "90 GPa"]\n'
 TARGETS = '[targets]\nucs.UCS = { value = "160 MPa", error = "8 MPa" }\n'
@@ -183,3 +191,25 @@ def test_target_without_an_error_gets_a_twentieth_and_numbers_their_units(tmp_pa
     ]  # fmt: skip
     assert found.confinements == {"triaxial": (10e6,)} and found.tests == ("ucs", "bend", "triaxial", "shear")
     assert (found.runs, found.seeds) == (40, 1)
+
+
+@given(st.randoms(use_true_random=False))
+@settings(max_examples=150, deadline=None)
+def test_damaged_file_is_read_or_refused_in_one_line(tmp_path_factory, random):
+    """The page's example with bytes dropped, doubled and changed."""
+    text = bytearray(EXAMPLE.encode())
+    for _ in range(random.randint(1, 4)):
+        k = random.randrange(len(text))
+        choice = random.randrange(3)
+        if choice == 0:
+            del text[k : k + random.randint(1, 20)]
+        elif choice == 1:
+            text[k:k] = text[k : k + random.randint(1, 40)]
+        else:
+            text[k] = random.randrange(256)
+    path = tmp_path_factory.mktemp("damaged") / "t.toml"
+    path.write_bytes(bytes(text))
+    try:
+        read_wanted(path)
+    except SceneError as error:
+        assert len(str(error).splitlines()) == 1 and "t.toml: " in str(error)
