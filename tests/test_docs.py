@@ -161,6 +161,8 @@ def known_names(module: str) -> set[str]:
     """What may follow a command as a word: cases, studies, measurements, standard tests and their rocks."""
     if module == "rsmpm_ti.bench":
         return {"speed", "passes", "scaling", "fill", "memory", "start", "runs", "error", *available()}
+    if find_spec(f"{module}.catalogue") is None:
+        return set()
     catalogue = importlib.import_module(f"{module}.catalogue")
     if module == "rsmpm_ti.lab":
         return {*catalogue.TESTS, *rocks()}

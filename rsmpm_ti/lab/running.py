@@ -29,12 +29,14 @@ class Task:
 
 @dataclass(frozen=True)
 class Done:
-    """problem: why it came to no end, "" where it did; kept: whether it was there before."""
+    """problem: why it came to no end, "" where it did; kept: whether it was there before; unstable: whether the problem
+    is the specimen's, and not one of the disk, the memory, the folder."""
 
     label: str
     seconds: float
     problem: str = ""
     kept: bool = False
+    unstable: bool = False
 
 
 def is_done(specimen: Specimen, folder: Path) -> bool:
@@ -72,14 +74,14 @@ def _run(task: Task) -> Done:
 
     from rsmpm_ti.run.run import simulate
 
-    begun, problem = time.perf_counter(), ""
+    begun, problem, unstable = time.perf_counter(), "", False
     try:
         with warnings.catch_warnings():
             warnings.simplefilter("ignore", RockWarning)  # they stand in summary.json, and in the report
             simulate(task.specimen.scene, out=task.folder, name="run", threads=task.threads, overwrite=True)
     except (SceneError, UnstableRun) as error:
-        problem = str(error)
-    return Done(task.specimen.label, time.perf_counter() - begun, problem)
+        problem, unstable = str(error), isinstance(error, UnstableRun)
+    return Done(task.specimen.label, time.perf_counter() - begun, problem, unstable=unstable)
 
 
 def read_back(specimen: Specimen, folder: Path) -> Measured:

@@ -10,7 +10,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from rsmpm_ti.errors import SceneError
-from rsmpm_ti.rock.sheet.reading import MAX_BYTES, read_sheet
+from rsmpm_ti.rock.sheet.reading import read_sheet
+from rsmpm_ti.rock.sheet.toml_file import MAX_BYTES
 from rsmpm_ti.scene import main
 
 KEYS = sorted(GRANITE)

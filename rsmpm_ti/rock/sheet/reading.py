@@ -8,25 +8,18 @@ import contextlib
 import dataclasses
 import difflib
 import math
-import stat
-import sys
 import warnings
 from pathlib import Path
 
 from annotated_types import Interval
 
 from rsmpm_ti.checks import annotations, phrase, remedy, unit_of, within
-from rsmpm_ti.errors import RockWarning, SceneError, reason, refuse, short, shown
+from rsmpm_ti.errors import RockWarning, SceneError, refuse, short, shown
 from rsmpm_ti.rock.sheet.data_sheet import DataSheet
+from rsmpm_ti.rock.sheet.toml_file import tables_of
 from rsmpm_ti.units import Unit, advice, percentage, quantity
 
-if sys.version_info >= (3, 11):
-    import tomllib
-else:
-    import tomli as tomllib
-
-MAX_BYTES = 65_536
-"""Of a sheet."""
+SHELF, EXAMPLE = "give a .toml file, or a name of the shelf", 'E = "55 GPa"'
 
 ABOUT = ("name", "source", "estimated", "sources")
 """Fields of a sheet that are no property of the rock."""
@@ -69,7 +62,7 @@ def from_keywords(**given: object) -> DataSheet:
 def read_sheet(path: str | Path) -> DataSheet:
     """The sheet that a TOML file holds. Raises SceneError, which names the file and the key."""
     try:
-        return _sheet(_tables(Path(path)), Path(path).stem)
+        return _sheet(tables_of(Path(path), "data sheet", SHELF, EXAMPLE), Path(path).stem)
     except SceneError as error:
         raise SceneError(f"{short(str(path))}: {error}") from None
 
@@ -78,26 +71,6 @@ def warn_of(sheet: DataSheet, dx: float | None) -> None:
     """Say by Python's warnings what is hard to believe in a sheet."""
     for said in sheet.doubts(dx):
         warnings.warn(said, RockWarning, stacklevel=3)
-
-
-def _tables(path: Path) -> dict:
-    try:
-        if not stat.S_ISREG(path.stat().st_mode):
-            raise SceneError("it is no regular file; give a .toml file, or a name of the shelf")
-        if path.stat().st_size > MAX_BYTES:
-            raise SceneError(f"it has more than {MAX_BYTES} bytes, which no data sheet has")
-        return tomllib.loads(path.read_bytes()[: MAX_BYTES + 1].decode("utf-8"))
-    except FileNotFoundError:
-        raise SceneError("there is no such file") from None
-    except UnicodeDecodeError:
-        raise SceneError("it is no text in UTF-8") from None
-    except OSError as error:
-        raise SceneError(f"it cannot be read: {reason(error)}") from None
-    except (ValueError, RecursionError) as error:
-        if isinstance(error, SceneError):
-            raise
-        why = "too deep" if isinstance(error, RecursionError) else short(" ".join(str(error).split()))
-        raise SceneError(f'it is no TOML: {why}; texts stand in quotes, E = "55 GPa"') from None
 
 
 def _sheet(file: dict, stem: str) -> DataSheet:
@@ -110,7 +83,7 @@ def _sheet(file: dict, stem: str) -> DataSheet:
                 raise refuse(key, value, "a text of one line")
         else:
             tables = "name, source, [rock], [estimated] and [sources]"
-            hint = f"; {key} belongs in [rock]" if _meant(key) else ""
+            hint = f"; {key} belongs in [rock]" if meant_key(key) else ""
             raise SceneError(f"it has no place for {shown(key)}: a sheet holds {tables}{hint}")
     measured, estimated = file.get("rock", {}), file.get("estimated", {})
     if twice := sorted(measured.keys() & estimated.keys()):
@@ -132,17 +105,17 @@ def _values(given: dict, *, bare: bool) -> dict[str, object]:
     """Numbers and words of a sheet, each within its range; bare: whether a number without a unit is one in SI."""
     for key in given:
         if key not in KEYS:
-            meant = _meant(key)
+            meant = meant_key(key)
             raise SceneError(
                 f"a sheet has no {shown(key)}; it has {', '.join(KEYS)}{meant and f'; did you mean {meant}?'}"
             )
     if missing := [key for key in NEEDED if given.get(key) is None]:
         remedy = "" if bare else "; what your source lacks stands in [estimated]"
         raise SceneError(f"{', '.join(missing)} {'is' if len(missing) == 1 else 'are'} missing{remedy}")
-    return {key: _value(key, value, bare=bare) for key, value in given.items() if value is not None}
+    return {key: value_of(key, value, bare=bare) for key, value in given.items() if value is not None}
 
 
-def _meant(key: str) -> str:
+def meant_key(key: str) -> str:
     """The key that another name stands for; "" where none is near."""
     small = {name.lower(): name for name in KEYS}
     word = str(key)[:100].lower().replace(" ", "_").replace("-", "_").replace("'", "")
@@ -151,7 +124,8 @@ def _meant(key: str) -> str:
     return found or (small.get(near[0]) or OTHER_NAMES[near[0]] if near else "")
 
 
-def _value(key: str, value: object, *, bare: bool):
+def value_of(key: str, value: object, *, bare: bool):
+    """The number [SI, degrees] or the word of a key; bare: as in `_values`. Raises SceneError, also out of range."""
     wanted = annotations(DataSheet)[key]
     bounds = next((part for part in within(wanted) if isinstance(part, Interval)), None)
     if bounds is None:  # a word

@@ -1,0 +1,1 @@
+"""What is fitted and to what: the file of targets, as numbers."""
