@@ -2,7 +2,7 @@
 
 import pytest
 
-from rsmpm_ti.lab.__main__ import main
+from rsmpm_ti.lab.__main__ import main, table
 from rsmpm_ti.lab.catalogue import TESTS
 
 
@@ -52,3 +52,12 @@ def test_folder_that_holds_something_is_refused_before_anything_runs(tmp_path, c
     assert "--overwrite" in capsys.readouterr().err
     assert [path.name for path in tmp_path.iterdir()] == ["mine.txt"]
     assert main(["ucs", "--quick", "--out", str(tmp_path / "mine.txt")]) == 2
+
+
+def test_what_is_not_defined_is_not_compared():
+    given = {"name": "K_Ic", "given": 1.4e6, "shown": "not defined", "shown_unit": "", "value": float("nan")}
+    alone = given | {"name": "peak load", "given": float("nan"), "shown": "3", "shown_unit": "kN/m", "value": 3e3}
+    found = given | {"name": "UCS", "shown": "1.54", "shown_unit": "MPa", "value": 1.54e6}
+    report = {"test": "scb", "about": "toughness", "rock": {"name": "granite"}, "doubts": []}
+    lines = table(report | {"quantities": [given, alone, found]}).splitlines()[2:]
+    assert ["off the sheet" in line for line in lines] == [False, False, True] and "+10 %" in lines[2]
