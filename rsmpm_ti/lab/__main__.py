@@ -1,6 +1,7 @@
 """python -m rsmpm_ti.lab TEST [--rock FILE] [--size L] [--dx L] [--confinement P,...] [--seeds N] [--quick]."""
 
 import argparse
+import math
 import os
 import sys
 import warnings
@@ -174,10 +175,8 @@ def table(report: dict) -> str:
     lines = [f"{report['test']}: {report['about']}", f"rock: {report['rock']['name']}"]
     for quantity in report["quantities"]:
         value = f"{quantity['shown']} {quantity['shown_unit']}".strip()
-        given = quantity["given"]
-        over = (
-            "" if given != given or not given else f"{100.0 * (quantity['value'] / given - 1.0):+.2g} % off the sheet"
-        )
+        ratio = quantity["value"] / quantity["given"] if quantity["given"] else math.nan
+        over = "" if math.isnan(ratio) else f"{100.0 * (ratio - 1.0):+.2g} % off the sheet"
         lines.append(f"  {quantity['name']:<34} {value:<26} {over}".rstrip())
     lines += [f"{'NOT VALID' if d['grave'] else 'note'}: {d['run']}: {d['sentence']}" for d in report["doubts"]]
     return "\n".join(lines)
