@@ -17,7 +17,7 @@ PACKAGE = ROOT / "rsmpm_ti"
 
 ROOMS = """
     ctrl_c errors process units checks records backend rock method spec setups fields analysis failure mpm solver paint
-    output run cases verify hardcases study bench scene
+    output results run cases verify hardcases study bench scene
 """.split()
 """Ground floor first: a module imports only from rooms to the left of its own, and within its room in no circle."""
 

@@ -18,7 +18,7 @@ from rsmpm_ti.errors import RockWarning, SceneError
 from rsmpm_ti.output import manifest
 from rsmpm_ti.output.files import CHECKPOINTS, write_checkpoint
 from rsmpm_ti.records.history_table import HISTORY_COLUMNS
-from rsmpm_ti.records.result import Progress
+from rsmpm_ti.records.progress import Progress
 from rsmpm_ti.run import checkpoint
 from rsmpm_ti.run.run import simulate
 from rsmpm_ti.run.settings import Settings

@@ -16,7 +16,7 @@ import pytest
 from rsmpm_ti import load_scene, simulate
 from rsmpm_ti.errors import UnstableRun
 from rsmpm_ti.records.history_table import HISTORY_COLUMNS
-from rsmpm_ti.records.result import Progress
+from rsmpm_ti.records.progress import Progress
 from rsmpm_ti.records.snapshot import PARTICLES
 from rsmpm_ti.records.summary_table import RECORD, SUMMARY
 from rsmpm_ti.scene import main
