@@ -75,12 +75,12 @@ def _rows(there: Stored, name: str, texts: tuple[str, ...] = ()) -> Rows:
             raise _damaged(there, name, "it has no header")
         dtype = np.dtype([(column, kinds.get(column, np.float64)) for column in header])
         read = [MODE_NAMES.index if column in texts else _number for column in header]
-        rows = [tuple(f(cell) for f, cell in zip(read, row, strict=True)) for row in reader]
+        rows = (tuple(f(cell) for f, cell in zip(read, row, strict=True)) for row in reader)
+        return np.fromiter(rows, dtype=dtype).view(Rows)
     except SceneError:
         raise
     except (ValueError, csv.Error) as error:
         raise _damaged(there, name, str(error)) from None
-    return np.array(rows, dtype=dtype).view(Rows)
 
 
 def _number(cell: str) -> float:
