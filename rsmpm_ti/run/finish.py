@@ -57,7 +57,7 @@ class End:
         self.speed, self.view = run.speed(), run.view()
         self.reactions = run.history.reactions.table()
         self.frames = None
-        if run.writer is not None and run.scene.output.frames:
+        if run.writer is not None and run.files[0].times:
             self.frames = FrameTimes(np.array(run.files[0].times), self.view.history).table()
         self.broken = run.scene, self.view.history, self.view.events, self.view.snapshot
         self._arrays: dict | None = None
