@@ -9,10 +9,11 @@ from .method.shape import Linear as Linear
 from .method.shape import QuadraticBSpline as QuadraticBSpline
 from .method.transfer import Apic as Apic
 from .method.transfer import PicFlip as PicFlip
-from .records.result import Progress as Progress
-from .records.result import Result as Result
+from .records.progress import Progress as Progress
 from .records.snapshot import Snapshot as Snapshot
 from .records.tables import Column as Column
+from .results.loading import load_result as load_result
+from .results.result import Result as Result
 from .rock.after_failure import AfterFailure as AfterFailure
 from .rock.after_failure import Clipped as Clipped
 from .rock.after_failure import CompressionOnly as CompressionOnly

@@ -257,6 +257,14 @@ def test_page_of_scenes_runs_and_writes_one(folder):
     assert load_scene("mine.py") == shipped
 
 
+def test_page_of_python_shows_a_result(folder):
+    (code,) = blocks("docs/python.md")
+    assert "settings={" in code
+    left = run_block(folder, code.replace("quick=True, settings={", f"settings={{**{COARSE}, "))
+    assert (folder / "curve.png").exists() and (folder / "peak.png").exists()
+    assert left["again"].frame().info == pytest.approx(left["picture"].info, nan_ok=True)
+
+
 def test_page_of_drawings_makes_one_file_of_its_regions(folder):
     for path in (ROOT / "tests/spec/drawings").iterdir():
         shutil.copy(path, folder)

@@ -7,8 +7,8 @@ from scipy.spatial import cKDTree
 
 from rsmpm_ti.analysis.crack_bands import find_bands
 from rsmpm_ti.analysis.wing_cracks import Wing, centre_line, half_turn_mismatch, leaving_angle, wings
-from rsmpm_ti.records.result import Result
 from rsmpm_ti.records.snapshot import TENSION
+from rsmpm_ti.results.result import Result
 from rsmpm_ti.spec.regions import Slit
 from rsmpm_ti.spec.scene import Scene
 

@@ -6,6 +6,7 @@ import typing
 from rsmpm_ti.checks import members
 from rsmpm_ti.output.fracture_tables import ACOUSTIC, CRACKS, FRAGMENTS
 from rsmpm_ti.records.events import EVENTS
+from rsmpm_ti.records.frame_table import FRAMES
 from rsmpm_ti.records.history_table import HISTORY
 from rsmpm_ti.records.reaction_table import REACTIONS
 from rsmpm_ti.records.snapshot import INSTANT, PARTICLES
@@ -67,7 +68,7 @@ run at its own interval and write what it likes; see its docstring, and that of 
 opening.
 """
 
-TABLES = (HISTORY, REACTIONS, EVENTS, CRACKS, FRAGMENTS, ACOUSTIC, PARTICLES, INSTANT, SUMMARY, RECORD)
+TABLES = (HISTORY, REACTIONS, FRAMES, EVENTS, CRACKS, FRAGMENTS, ACOUSTIC, PARTICLES, INSTANT, SUMMARY, RECORD)
 
 
 def anchor(table: Table) -> str:

@@ -16,13 +16,9 @@ def write_table(path: Path, table: Table, source, dim: int = 2) -> None:
     write_csv(path, *table.rows(source, dim))
 
 
-def write_history(path: Path, history: np.ndarray) -> None:
-    """history.csv: every column that the run recorded, one line per row."""
-    write_csv(path, history.dtype.names or (), history.tolist())
-
-
-def write_reactions(path: Path, reactions: np.ndarray) -> None:
-    write_csv(path, reactions.dtype.names or (), reactions.tolist())
+def write_rows(path: Path, rows: np.ndarray) -> None:
+    """A structured array as CSV: its fields are the columns, one line per row."""
+    write_csv(path, rows.dtype.names or (), rows.tolist())
 
 
 def write_events(path: Path, events: EventTable) -> None:

@@ -194,6 +194,11 @@ class RunFolder:
         manifest.write(self.path, self._manifest)
 
     @property
+    def run(self) -> str:
+        """By which manifest.txt identifies the run in the folder; "" where there is none."""
+        return self._manifest.run if self._manifest else ""
+
+    @property
     def names(self) -> list[str]:
         """Of files that this run has made."""
         return sorted(self._names)

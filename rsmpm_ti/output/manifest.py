@@ -46,6 +46,7 @@ def names_of(scene: Scene, name: str) -> Iterator[str]:
         yield COLLECTION
         yield from map(vtu_name, range(wanted.vtu + 1))
     if wanted.frames:  # jumps add as many, at most
+        yield "frames.csv"
         for kind in kinds_of(scene):
             yield from (frame_name(kind, number) for number in range(2 * wanted.frames + 1))
 

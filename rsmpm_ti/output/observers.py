@@ -23,13 +23,13 @@ class Frames(Observer):
         self._writer, self._frames = writer, frames
         self._jump = max(1.0, JUMP_FRACTION * particle_count)
         self._used, self._next = 0, 0  # frames added at jumps; the next one that is due
-        self._failed, self._count = 0.0, 0
-        self._time = -1.0  # of the last frame
+        self._failed = 0.0
+        self.times: list[float] = []  # of the frames, by number [s]
 
     def see(self, view: View) -> None:
         if self._due(view.fraction, float(view.survey.failed_tension + view.survey.failed_shear)):
-            self._writer.frame(self._count, view.readout, view.history)
-            self._count, self._time = self._count + 1, view.time
+            self._writer.frame(len(self.times), view.readout, view.history)
+            self.times.append(view.time)
 
     def _due(self, fraction: float, failed: float) -> bool:
         """failed: particles failed so far."""
@@ -46,40 +46,34 @@ class Frames(Observer):
         return due
 
     def state(self) -> dict:
-        return {
-            "next": self._next,
-            "used": self._used,
-            "failed": self._failed,
-            "count": self._count,
-            "time": self._time,
-        }
+        return {"next": self._next, "used": self._used, "failed": self._failed, "times": self.times}
 
     def resume(self, state: dict) -> None:
         self._next, self._used = state["next"], state["used"]
-        self._failed, self._count, self._time = state["failed"], state["count"], state["time"]
+        self._failed, self.times = state["failed"], [float(time) for time in state["times"]]
 
     def go_on(self, view: View) -> list[str]:
         """Remove what a run that was killed had painted after its checkpoint, film what is there before it, paint a
         last frame again that is of the checkpoint's own state. Returns the names of what is lost."""
-        folder = self._writer.folder
+        folder, count = self._writer.folder, len(self.times)
         there = [name for name in folder.names if name.startswith(f"{FRAMES}/")]
-        folder.remove([name for name in there if number_of(name) >= self._count])
-        filmed = {frame_name(kind, number): number for number in range(self._count) for kind in ("stress", "cracks")}
-        lost = folder.lost(sorted({*filmed, *(name for name in there if number_of(name) < self._count)}))
-        last = self._count - 1
-        again = self._time == view.time and any(number_of(name) == last for name in lost)
+        folder.remove([name for name in there if number_of(name) >= count])
+        filmed = {frame_name(kind, number): number for number in range(count) for kind in ("stress", "cracks")}
+        lost = folder.lost(sorted({*filmed, *(name for name in there if number_of(name) < count)}))
+        last = count - 1
+        again = self.times[-1:] == [view.time] and any(number_of(name) == last for name in lost)
         gaps = {filmed.get(name) for name in lost} | ({last} if again else set())
-        self._writer.refilm([number for number in range(self._count) if number not in gaps])
+        self._writer.refilm([number for number in range(count) if number not in gaps])
         if again:
             self._writer.frame(last, view.readout, view.history)
         return [name for name in lost if not (again and number_of(name) == last)]
 
     def realign(self, fraction: float) -> None:
-        self._next = math.floor(fraction * self._frames + 1e-9) + 1 if self._count else 0
+        self._next = math.floor(fraction * self._frames + 1e-9) + 1 if self.times else 0
 
     def catch_up(self, view: View) -> None:
         """The first picture of a run that was done without any."""
-        if self._count == 0:
+        if not self.times:
             self.see(view)
 
 

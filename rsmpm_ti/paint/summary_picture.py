@@ -1,5 +1,6 @@
 """The one picture of a finished run: load curve, failures, and the crack patterns at the largest load and the end."""
 
+import math
 import os
 import textwrap
 from collections.abc import Sequence
@@ -61,7 +62,7 @@ def summary_picture(
     curve, *panels = figure.subplots(1, 1 + len(patterns), width_ratios=(1.5, *(1.0 for _ in patterns)))
     if title:
         figure.suptitle(textwrap.fill(drawable(title), TITLE_LINE), fontsize=17, fontweight="bold")
-    _curve(curve, history, painter.wording, acoustic)
+    draw_load(curve, history, painter.wording, acoustic)
     for axes, (pattern, of_it, name) in zip(panels, patterns, strict=True):
         _cracks(axes, painter, pattern, f"{name}, {pattern.time * 1e3:.3f} ms")
         _lines(axes, of_it)
@@ -72,7 +73,11 @@ def summary_picture(
     return write_png(path, np.asarray(figure.canvas.buffer_rgba())[..., :3].copy(), painter=painter.backend)
 
 
-def _curve(axes, history: np.ndarray, wording: Wording, acoustic: np.ndarray) -> None:
+def draw_load(axes, history: np.ndarray, wording: Wording, acoustic: np.ndarray, first: float = math.nan) -> None:
+    """The load over the strain, or over time where no strain was recorded, with its peak and the failures so far.
+
+    acoustic: times of acoustic events, ascending [s]; first: time of the first failure [s], which is marked.
+    """
     strain, load = load_curve(history)
     tension, shear = (tuple(c / 255.0 for c in colour) for colour in (crack_palette().tension, crack_palette().shear))
     handles = []
@@ -93,6 +98,9 @@ def _curve(axes, history: np.ndarray, wording: Wording, acoustic: np.ndarray) ->
         axes.set_ylim(bottom=min(0.0, 1.05 * float(np.nanmin(load)) * MEGA))
         counts = axes.twinx()
         counts.tick_params(labelsize=12)
+    if math.isfinite(first) and len(history):
+        at = np.interp(first, history["time_s"], across)
+        handles.append(axes.axvline(at, color="#882255", linestyle=":", label="first failure"))
     counts.set_ylabel("failed particles, acoustic events" if len(acoustic) else "failed particles", fontsize=14)
     handles += counts.plot(across, history["failed_tension"], color=tension, label="failed in tension")
     handles += counts.plot(across, history["failed_shear"], color=shear, label="failed in shear")

@@ -4,6 +4,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from rsmpm_ti.records.rows import data_frame
 from rsmpm_ti.records.snapshot import MODE_NAMES
 from rsmpm_ti.records.tables import Column, Table
 
@@ -46,6 +47,10 @@ class EventTable:
         columns = ("time", "x", "mode", "sigma_1", "sigma_3", "released", "id")
         cut = {name: getattr(self, name)[:n] for name in columns}
         return replace(self, **cut, normal=None if self.normal is None else self.normal[:n])
+
+    def to_frame(self):
+        """A pandas.DataFrame with the columns of events.csv. Raises SceneError where pandas is not installed."""
+        return data_frame(EVENTS.filled(self, self.x.shape[1]))
 
     def __len__(self) -> int:
         return len(self.time)

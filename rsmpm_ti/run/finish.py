@@ -7,14 +7,18 @@ again from the last checkpoint.
 import time
 from pathlib import Path
 
+import numpy as np
+
 from rsmpm_ti.analysis.fracture import Fracture, crack_lines, measure_fracture
 from rsmpm_ti.analysis.summary import summarise
 from rsmpm_ti.errors import ObserverError, SceneError
-from rsmpm_ti.output.files import write_checkpoint, write_events, write_history, write_reactions
+from rsmpm_ti.output.files import write_checkpoint, write_events, write_rows
 from rsmpm_ti.output.folder import SUMMARY
 from rsmpm_ti.output.fracture_tables import write_fracture
 from rsmpm_ti.records.files import plain, write_json
-from rsmpm_ti.records.result import Result
+from rsmpm_ti.records.frame_table import FrameTimes
+from rsmpm_ti.records.rows import Rows
+from rsmpm_ti.results.result import Result
 from rsmpm_ti.run.attempts import Attempts
 from rsmpm_ti.run.damping import damped_energy, damping_said, mixing_energy, stopped_energy, viscous_energy
 from rsmpm_ti.run.warnings import kinetic_share_after, warnings_of
@@ -37,9 +41,10 @@ def finish(run, stopped: str, failure: Exception | None) -> tuple[Result, SceneE
         run.folder.complete()
     view, given_up = end.view, run.writer.problem if run.writer is not None and run.interrupt.hurried else ""
     result = Result(
-        history=view.history, summary=summary, events=view.events, fracture=fracture, snapshot=view.snapshot,
-        out=run.out, stopped=stopped or given_up, reactions=end.reactions,
-        signal=0 if run.over and not given_up else run.interrupt.signal,
+        history=view.history.view(Rows), summary=summary, events=view.events, fracture=fracture, snapshot=view.snapshot,
+        out=run.out, stopped=stopped or given_up, frames=end.frames,
+        reactions=None if end.reactions is None else end.reactions.view(Rows),
+        signal=0 if run.over and not given_up else run.interrupt.signal, run=run.folder.run if run.folder else "",
     )  # fmt: skip
     return result, end.attempt.problem
 
@@ -51,15 +56,20 @@ class End:
         self.run, self.stopped, self.failure, self.attempt = run, stopped, failure, Attempts()
         self.speed, self.view = run.speed(), run.view()
         self.reactions = run.history.reactions.table()
+        self.frames = None
+        if run.writer is not None and run.files[0].times:
+            self.frames = FrameTimes(np.array(run.files[0].times), self.view.history).table()
         self.broken = run.scene, self.view.history, self.view.events, self.view.snapshot
         self._arrays: dict | None = None
 
     def write_tables(self) -> None:
         """The run itself: its tables, a checkpoint and its numbers so far."""
         view, attempt, writer = self.view, self.attempt, self.run.writer
-        attempt(lambda: write_history(self._file("history.csv"), view.history))
+        attempt(lambda: write_rows(self._file("history.csv"), view.history))
         if self.reactions is not None:
-            attempt(lambda: write_reactions(self._file("reactions.csv"), self.reactions))
+            attempt(lambda: write_rows(self._file("reactions.csv"), self.reactions))
+        if (frames := self.frames) is not None:
+            attempt(lambda: write_rows(self._file("frames.csv"), frames))
         attempt(lambda: write_events(self._file("events.csv"), view.events))
         # of a state that is sound: a user's observer and the writer say nothing against it, other failures do
         elsewhere = isinstance(self.failure, ObserverError) or (isinstance(self.failure, SceneError) and writer.problem)

@@ -11,8 +11,9 @@ from rsmpm_ti.backend.start import start_taichi
 from rsmpm_ti.backend.threads import check_run_threads
 from rsmpm_ti.errors import BrokenApart, ObserverError, RockWarning, SceneError, UnstableRun, reason, refuse, still_kept
 from rsmpm_ti.output.folder import RunFolder, named, prepare
-from rsmpm_ti.records.result import Progress, Result
+from rsmpm_ti.records.progress import Progress
 from rsmpm_ti.records.tables import Column
+from rsmpm_ti.results.result import Result
 from rsmpm_ti.run.alone import alone
 from rsmpm_ti.run.finish import finish
 from rsmpm_ti.run.interrupt import Interrupt, asked_to_stop
@@ -175,8 +176,7 @@ class Run:
         from rsmpm_ti.run.checkpoint import Checkpoint
         from rsmpm_ti.solver.observer import Watch
 
-        own: list = []
-        last: list = []
+        own, last = list[Any](), list[Any]()
         if self.writer is not None:
             from rsmpm_ti.output.observers import Frames, LargestLoad, ParticleFiles
 

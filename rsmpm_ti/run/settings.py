@@ -9,7 +9,7 @@ import numpy as np
 from rsmpm_ti import __version__
 from rsmpm_ti.errors import refuse
 from rsmpm_ti.records.history_table import HISTORY_COLUMNS
-from rsmpm_ti.records.result import Progress
+from rsmpm_ti.records.progress import Progress
 from rsmpm_ti.records.tables import Column
 from rsmpm_ti.spec.library.names import ALLOWED, is_name
 from rsmpm_ti.spec.scene import Scene

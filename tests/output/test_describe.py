@@ -8,7 +8,7 @@ import pytest
 from snapshots import snapshot_of
 
 from rsmpm_ti.output.describe import TABLES, page
-from rsmpm_ti.output.files import write_history, write_vtu
+from rsmpm_ti.output.files import write_rows, write_vtu
 from rsmpm_ti.records.files import write_csv, write_json
 from rsmpm_ti.records.snapshot import PARTICLES
 
@@ -41,7 +41,7 @@ def test_what_a_law_remembers_is_written_under_its_own_name(tmp_path):
 
 def test_what_is_not_finite_is_an_empty_cell_or_null(tmp_path):
     rows = np.array([(0.5, np.nan), (np.inf, 1.0)], dtype=[("a", float), ("b", float)])
-    write_history(tmp_path / "h.csv", rows)
+    write_rows(tmp_path / "h.csv", rows)
     assert (tmp_path / "h.csv").read_text().split() == ["a,b", "0.5,", ",1"]
     write_json(tmp_path / "s.json", {"a": float("nan"), "b": [1.0, np.float64("inf"), -np.finfo(float).max]})
     assert "".join((tmp_path / "s.json").read_text().split()) == '{"a":null,"b":[1.0,null,null]}'

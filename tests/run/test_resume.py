@@ -14,11 +14,12 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from rsmpm_ti import load_result
 from rsmpm_ti.errors import RockWarning, SceneError
 from rsmpm_ti.output import manifest
 from rsmpm_ti.output.files import CHECKPOINTS, write_checkpoint
 from rsmpm_ti.records.history_table import HISTORY_COLUMNS
-from rsmpm_ti.records.result import Progress
+from rsmpm_ti.records.progress import Progress
 from rsmpm_ti.run import checkpoint
 from rsmpm_ti.run.run import simulate
 from rsmpm_ti.run.settings import Settings
@@ -240,6 +241,8 @@ def test_a_run_that_is_done_goes_on_to_a_later_end_as_if_it_had_been_asked_for(t
     assert (rows > 0.0).all() and len(rows) > 25, "half of the run at 10 rows for it, half at 40 for the whole"
     # before: 0, 1/2 and 1 of half the run; after: 3/4 and all of the whole
     assert names(tmp_path / "a", "frames/stress_*.png") == [f"stress_{k:04d}.png" for k in range(5)]
+    strains = load_result(tmp_path / "a").frames["axial_strain"]
+    assert strains == pytest.approx([np.nan, 5e-5, 1e-4, 1.5e-4, 2e-4], abs=1e-5, nan_ok=True)  # within a row
     assert json.loads((tmp_path / "a" / "scene.json").read_text())["scene"]["schedule"]["strain_end"] == 2e-4
 
 

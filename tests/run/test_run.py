@@ -16,7 +16,7 @@ import pytest
 from rsmpm_ti import load_scene, simulate
 from rsmpm_ti.errors import UnstableRun
 from rsmpm_ti.records.history_table import HISTORY_COLUMNS
-from rsmpm_ti.records.result import Progress
+from rsmpm_ti.records.progress import Progress
 from rsmpm_ti.records.snapshot import PARTICLES
 from rsmpm_ti.records.summary_table import RECORD, SUMMARY
 from rsmpm_ti.scene import main
@@ -40,7 +40,7 @@ def test_every_promised_file_is_written(run_folder):
     names = {str(p.relative_to(run_folder)) for p in run_folder.rglob("*") if p.is_file()}
     for expected in (
         "frames/stress_0000.png", "frames/cracks_0000.png", "frames/stress_0004.png", "cube.mp4", "summary.png",
-        "history.csv", "reactions.csv", "events.csv", "cracks.csv", "fragments.csv", "acoustic.csv",
+        "history.csv", "reactions.csv", "frames.csv", "events.csv", "cracks.csv", "fragments.csv", "acoustic.csv",
         "particles_0000.vtu", "particles_0010.vtu", "particles.pvd", "scene.json", "summary.json", "checkpoint.npz",
     ):  # fmt: skip
         assert expected in names

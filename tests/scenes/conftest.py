@@ -5,7 +5,7 @@ import functools
 import pytest
 
 from rsmpm_ti import load_scene, simulate
-from rsmpm_ti.records.result import Result
+from rsmpm_ti.results.result import Result
 
 COARSE = {
     "cube": {"dx": 2e-3, "flaw_width": 6e-3, "time_scale": 20.0},

@@ -7,8 +7,8 @@ from dataclasses import dataclass
 import numpy as np
 import pytest
 
-from rsmpm_ti.records.result import Result
 from rsmpm_ti.records.snapshot import INTACT
+from rsmpm_ti.results.result import Result
 from rsmpm_ti.spec.library.places import available
 
 STRENGTH, UCS = 2e6, 25.520e6  # in tension, and 2 c cos(phi)/(1 - sin(phi)) of 5.95 MPa and 40 degrees [Pa]

@@ -73,10 +73,12 @@ def _check_largest(part: dict, contents: Contents) -> None:
 
 def _check_frames(part: dict, time: float) -> None:
     own = part["own"]
-    wanted = {"next", "used", "failed", "count", "time"}
-    need(set(own) == wanted and not part["arrays"], "its frames are not counted")
-    need(own["time"] == -1.0 or _number(own["time"], time * (1.0 + 1e-9)), "its latest frame is of another time")
-    need(all(_count(own[name], MOST_LOOKS) for name in ("next", "used", "count")), "its frames are not counted")
+    need(set(own) == {"next", "used", "failed", "times"} and not part["arrays"], "its frames are not counted")
+    times = own["times"]
+    need(isinstance(times, list) and len(times) <= MOST_LOOKS, "its frames are not counted")
+    need(all(_number(entry, time * (1.0 + 1e-9)) for entry in times), "its frames are of other times")
+    need(times == sorted(times), "its frames are of other times")
+    need(all(_count(own[name], MOST_LOOKS) for name in ("next", "used")), "its frames are not counted")
     need(_number(own["failed"], 1e12), "failures at its latest frame are not counted")
 
 
