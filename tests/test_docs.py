@@ -2,7 +2,6 @@
 
 import importlib
 import re
-import runpy
 import shlex
 import shutil
 from importlib.util import find_spec
@@ -10,26 +9,18 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from pages import COARSE, ROOT, blocks, run_block
 from PIL import Image
 
-from rsmpm_ti import __version__, load_scene, simulate
+from rsmpm_ti import __version__, load_scene
 from rsmpm_ti.__main__ import COMMANDS
-from rsmpm_ti.cases.running import run_case
-from rsmpm_ti.errors import SceneError
 from rsmpm_ti.scene import build, parser
 from rsmpm_ti.spec.library.places import available
 from rsmpm_ti.spec.library.rocks import rocks
 
-ROOT = Path(__file__).resolve().parent.parent
 PAGES = [ROOT / "README.md", ROOT / "CONTRIBUTING.md", *sorted((ROOT / "docs").glob("*.md"))]
 
 README_BYTES, MOVING_BYTES = 9000, 2_000_000
-
-COARSE = {
-    "dx": "0.002", "flaw_width": "0.006", "strain_end": "2e-4", "shape": "Linear", "schedule.rows": "50",
-    "output.frames": "2", "output.movie": "false", "output.vtu": "1",
-}  # fmt: skip
-"""Settings by which a snippet's `cube` runs in a second: few cells, a wide flaw, and what compiles fastest."""
 
 
 def name_of(page: Path) -> str:
@@ -38,11 +29,6 @@ def name_of(page: Path) -> str:
 
 def each_page(test):
     return pytest.mark.parametrize("page", PAGES, ids=name_of)(test)
-
-
-def blocks(page: str, language: str = "python") -> list[str]:
-    """Code blocks of a page, in order."""
-    return re.findall(rf"```{language}\n(.*?)```", (ROOT / page).read_text(encoding="utf-8"), re.DOTALL)
 
 
 def code_of(page: Path) -> list[str]:
@@ -220,13 +206,6 @@ def test_settings_named_apart_are_fields_of_a_scene(page):
 # --- Python snippets
 
 
-def run_block(folder: Path, code: str) -> dict:
-    """What a block leaves behind. Taichi reads kernels from files, so it is one."""
-    path = folder / "snippet.py"
-    path.write_text(code.replace("quick=True", f"quick=True, settings={COARSE}"), encoding="utf-8")
-    return runpy.run_path(str(path))
-
-
 @pytest.fixture
 def folder(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)  # what snippets write goes here
@@ -282,76 +261,3 @@ def test_page_of_references_computes_its_numbers(folder):
     assert left["late"] == pytest.approx(0.410, abs=5e-4)
     assert left["delays"] == pytest.approx([1.37, 1.73, 1.73, 2.18], abs=5e-3)
     assert left["overshoot"] == pytest.approx(0.274, abs=5e-4)
-
-
-def recipe(*headings: str) -> str:
-    """The blocks below these headings of docs/extending.md, as one file."""
-    sections = re.split(r"^## ", (ROOT / "docs/extending.md").read_text(encoding="utf-8"), flags=re.MULTILINE)[1:]
-    found = {section.splitlines()[0]: re.findall(r"```python\n(.*?)```", section, re.DOTALL) for section in sections}
-    assert set(headings) <= set(found) and all(len(code) <= 1 for code in found.values())
-    return "\n\n".join(found[heading][0] for heading in headings)
-
-
-TOGETHER = ("Shape function", "Transfer", "Criterion", "Boundary", "Region", "Scene")
-
-APART = ("Law after failure", "Observer", "History column", "Load cell", "Verification case", "A field of scene data")
-
-
-def test_every_recipe_is_run():
-    assert len(blocks("docs/extending.md")) == len(TOGETHER) + len(APART)
-    assert all(recipe(heading) for heading in TOGETHER + APART)
-
-
-def test_recipe_of_a_field_refuses_what_its_annotation_does_not_allow(folder):
-    (folder / "isotropic.py").write_text(recipe("A field of scene data"), encoding="utf-8")
-    kind = runpy.run_path("isotropic.py")["Isotropic"]
-    assert kind(E=17e9, nu=0.14).nu == 0.14
-    with pytest.raises(SceneError, match=r"^elasticity\.nu = 0\.5 is refused: it must be a number in .*; at 0\.5"):
-        kind(E=17e9, nu=0.5)
-
-
-def test_recipes_make_one_scene_that_breaks(folder):
-    (folder / "mine.py").write_text(recipe(*TOGETHER), encoding="utf-8")
-    scene = load_scene("mine.py", dx=2.5e-3, strain_end=8e-4, settings={"schedule.rows": "50"})
-    assert {type(part).__name__ for part in (scene.shape, scene.transfer, scene.rock.criterion)} == {
-        "Blend", "LimitedFlip", "HoekBrown",
-    }  # fmt: skip
-    near = np.linspace(-2.0, 2.0, 401)
-    total = sum(scene.shape.profile(near - k) for k in range(-4, 5))
-    np.testing.assert_allclose(total, 1.0, atol=1e-14)
-    result = simulate(scene, threads=1)
-    assert result.summary["failed_tension"] > 0 and result.stopped == ""
-    assert result.summary["energy_balance_error"] < 0.02
-
-
-def test_recipe_of_a_law_remembers(folder):
-    left = run_block(folder, recipe("Law after failure"))
-    state = left["result"].snapshot
-    failed = state.failure_mode > 0
-    assert failed.any() and (state.history["age"][failed] > 0.0).all() and (state.history["age"][~failed] == 0.0).all()
-
-
-def test_recipe_of_an_observer_sees_the_crack_go_down(folder):
-    depths = run_block(folder, recipe("Observer"))["deepest"].depths
-    assert len(depths) == 11 and depths == sorted(depths, reverse=True) and depths[-1] < 0.045 < depths[0]
-
-
-def test_recipe_of_a_column_is_in_the_history(folder):
-    speed = run_block(folder, recipe("History column"))["result"].history["fastest_m_s"]
-    assert (speed > 2.4e-3).all()  # no slower than the platens
-
-
-def test_recipe_of_a_load_cell_reads_two_rollers_as_one_side(folder):
-    (folder / "bending.py").write_text(recipe("Load cell"), encoding="utf-8")
-    cell = load_scene("bending.py").loading.load_cell
-    assert (cell.lower, cell.upper) == ((0, 1), (2,))
-    load = cell.read(np.array([[0.0, 1e3], [0.0, 1e3], [0.0, -2e3]]))
-    assert (load.force_lower, load.force_upper) == (2e3, 2e3)
-    assert load.stress == pytest.approx(1.5 * 2e3 * 0.08 / 0.02**2)  # 3 F L/(2 h^2)
-
-
-def test_recipe_of_a_case_passes(folder, monkeypatch):
-    (folder / "my_cases.py").write_text(recipe("Verification case"), encoding="utf-8")
-    monkeypatch.syspath_prepend(str(folder))
-    rows = run_case("my_cases", "stiffness", full=False, out=None)
-    assert rows and all(row.passed for row in rows)
