@@ -1,20 +1,17 @@
 """Specimens run in processes of their own, each an ordinary run in its folder, and read back from there."""
 
-import csv
 import json
-import math
 import multiprocessing
 import warnings
 from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
 
-import numpy as np
-
 from rsmpm_ti.errors import RockWarning, SceneError, UnstableRun
 from rsmpm_ti.lab.standard import Measured, Specimen
 from rsmpm_ti.output.earlier import summary_of
 from rsmpm_ti.process import no_current_folder, without_ctrl_c
+from rsmpm_ti.results.loading import load_result
 from rsmpm_ti.spec.scene_json import to_plain
 
 
@@ -86,12 +83,5 @@ def _run(task: Task) -> Done:
 
 def read_back(specimen: Specimen, folder: Path) -> Measured:
     """The records of a run that is complete. Raises SceneError where they cannot be read."""
-    try:
-        with open(folder / "history.csv", newline="", encoding="utf-8") as file:
-            header, *rows = csv.reader(file)
-        values = [tuple(float(cell) if cell else math.nan for cell in row) for row in rows]
-        history = np.array(values, dtype=[(name, np.float64) for name in header])
-        summary = json.loads((folder / "summary.json").read_text(encoding="utf-8"))
-    except (OSError, ValueError) as error:
-        raise SceneError(f"{folder}: the records of a run cannot be read: {error}; run it again") from None
-    return Measured(specimen=specimen, history=history, summary=summary, folder=folder)
+    result = load_result(folder)
+    return Measured(specimen=specimen, history=result.history, summary=result.summary, folder=folder)
