@@ -1,20 +1,21 @@
 """A notched beam in three-point bending: a crack leaves the notch for the roller above, at the rock's toughness.
 
 The shape of ASTM E399 and RILEM (1985), Mater. Struct. 18:285: span four depths, notch half the depth. The beam is two
-lengths E' G_f/sigma_t^2 of `lab_rock` deep: the load falls slowly, and the area below its curve over the ligament is
-G_f.
+lengths E' G_f/sigma_t^2 of `lab_rock` deep. The peak gives K_Ic, with `--quick` 6 % too high: its notch is as wide as
+three cells.
 """
 
 from rsmpm_ti import FractureEnergy, Jittered, Length, Scene, bending_test, lab_rock, mm
 
 # a coarser rock: its mean is over two cells at least
-QUICK = {"dx": 1.5 * mm, "length": 3.0 * mm, "time_scale": 4.0}
+QUICK = {"dx": 1.5 * mm, "length": 3.0 * mm, "time_scale": 4.0, "deflection_end": 0.03 * mm}
 
 
 def scene(
     *,
     depth: Length = 42.0 * mm,
     notch: Length = 21.0 * mm,
+    deflection_end: Length = 0.043 * mm,
     G_f_I: FractureEnergy = 5.0,
     length: Length = 2.0 * mm,
     dx: Length = 1.0 * mm,
@@ -27,6 +28,7 @@ def scene(
         dx=dx,
         depth=depth,
         notch=notch,
+        deflection_end=deflection_end,
         seeding=Jittered(amount=0.1, seed=seed),
         time_scale=time_scale,
     )
