@@ -100,9 +100,11 @@ def _kinetic_ratio(history: np.ndarray) -> np.ndarray:
 
 
 def _motion(scene: Scene, numbers: dict, history: np.ndarray) -> str:
-    """A collapse that sets the specimen in motion is no quasi-static test any more, and knows of its mass."""
+    """A collapse that sets the specimen in motion is no quasi-static test any more, and knows of its mass. Where
+    bodies fly or fall it was none before."""
     share = numbers["kinetic_share_after"]
-    if share is None or share <= MAX_KINETIC:
+    dynamic = scene.loading.force_field is not None or any(body.velocity or body.spin for body in scene.bodies)
+    if share is None or share <= MAX_KINETIC or dynamic:
         return ""
     over = _kinetic_ratio(history) > MAX_KINETIC
     over &= history["time_s"] >= numbers["first_failure_time_s"]

@@ -65,7 +65,7 @@ def bending_test(
     beam, pad, ligament = Box(lower=(-half, 0.0), upper=(half, depth)), 0.5 * ROLLER * dx, depth - notch
     flaws, gauges = (), ()
     if notch:
-        below = width  # so that its lower end, which is rounded too, is no part of the beam
+        below = 0.5 * width  # so that its lower end, which is rounded too, is no part of the beam
         flaws = (
             Slit(centre=(0.0, 0.5 * (notch - below)), length=notch + below, width=width, angle=90.0, rounded=True),
         )

@@ -65,7 +65,8 @@ def semicircular_test(
     width, pad, room = NOTCH * dx, 0.5 * ROLLER * dx, 4.0 * dx
     arc = np.linspace(0.0, math.pi, CORNERS)
     half = Polygon(points=radius * np.stack([np.cos(arc), np.abs(np.sin(arc))], axis=1))
-    slit = Slit(centre=(0.0, 0.5 * (notch - width)), length=notch + width, width=width, angle=90.0, rounded=True)
+    below = 0.5 * width  # its lower end, which is rounded too, is no part of the half disc
+    slit = Slit(centre=(0.0, 0.5 * (notch - below)), length=notch + below, width=width, angle=90.0, rounded=True)
     foot = 0.5 * width + dx
     expected = peak_load(rock, radius=radius, notch=notch, span=span) / (STIFFNESS * plane_modulus(rock))
     end, duration = REACH * expected if deflection_end is None else deflection_end, expected / speed

@@ -17,6 +17,13 @@ COARSE = {
     "confined": {"dx": 1.25e-3, "length": 2.5e-3, "flaw_width": 3.75e-3, "time_scale": 60.0},
     "two_flaws": {"dx": 1.25e-3, "length": 2.5e-3, "flaw_width": 3.75e-3, "time_scale": 60.0, "strain_end": 7.5e-4},
     "intact_weibull": {"dx": 1.25e-3, "length": 2.5e-3, "time_scale": 80.0, "strain_end": 1.0e-3},
+    "notched_beam": {"depth": 32e-3, "notch": 16e-3, "deflection_end": 3.2e-5, "dx": 2e-3, "length": 4e-3,
+                     "time_scale": 6.0},
+    "semicircular_bend": {"dx": 2e-3, "length": 4e-3, "deflection_end": 3e-5},
+    "direct_shear": {"dx": 2e-3, "length": 4e-3},
+    "tunnel": {"dx": 2e-3, "length": 4e-3, "time_scale": 30.0},
+    "impact": {"dx": 1e-3, "length": 2e-3},
+    "slope": {"dx": 4.0, "length": 8.0, "t_end": 5.0},
 }  # fmt: skip
 """Keywords of a run of some 5 s that breaks rock, with cells as large as the scene's flaw and material length allow."""
 

@@ -87,6 +87,15 @@ def test_flaw_that_reaches_out_of_its_body_is_said(flaw, outside):
         assert re.search(r"reaches out of bodies\[0\]: \d+ % of it lies outside", lines[0])
 
 
+def test_notch_of_which_a_round_end_alone_lies_outside_is_meant():
+    """Its straight faces end at the plate's left edge, or 1 mm beyond it."""
+    notch = Slit(centre=(5e-3, 0.03), length=10e-3, width=3e-3, angle=0.0, rounded=True)
+    edge = PLATE.bounds()[0][0]
+    for beyond, sentences in ((1.5e-3, 0), (2.5e-3, 1)):
+        moved = replace(notch, centre=(edge + 5e-3 - beyond, 0.03))
+        assert len(said(scene(cut(moved)))) == sentences
+
+
 def test_flaws_that_cross_lie_in_their_body():
     first, second = slit(), slit(angle=90.0)
     assert said(scene(cut(first, second))) == []

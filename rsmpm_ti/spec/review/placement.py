@@ -111,11 +111,18 @@ def check_flaws(scene) -> None:
             raise refuse(name, value, box, "it cuts nothing where it is")
 
 
+def round_end(slit: Slit) -> float:
+    """Fraction of a slit's area in one of its round ends, and what `outside_fraction` may add to that; 0 if square."""
+    area = slit.width * (slit.length - slit.width) + 0.25 * math.pi * slit.width**2
+    return math.pi * slit.width**2 / (8.0 * area) + 1.0 / 64.0 if slit.rounded else 0.0
+
+
 def flaws_said(scene) -> list[str]:
-    """A flaw that reaches out of its body is a notch, or cuts the body in two; of a set only how many do."""
+    """A flaw that reaches out of its body is a notch, or cuts the body in two; of a set only how many do. One of which
+    a round end alone lies outside is a notch that was meant."""
     said = []
     for k, _, slits in _flaws(scene):
-        reaching = [(slit, outside) for slit, outside in slits if outside > 0.0]
+        reaching = [(slit, outside) for slit, outside in slits if outside > round_end(slit)]
         if len(slits) > 1 and reaching:
             said.append(
                 f"{len(reaching)} of the {len(slits)} flaws of a set reach out of bodies[{k}], so they are notches, or "
