@@ -91,44 +91,13 @@ def node_speed(sim: ti.template(), b: ti.template(), i, factor):
 
 
 @ti.func
-def hold(sim: ti.template(), i, v, factor, before: ti.template()):
-    """Velocity mapped apart from force, after every boundary that holds the node: as the node was held last.
-
-    before: at the boundaries' speeds of the step before.
-    """
+def hold(sim: ti.template(), i, v, factor):
+    """Velocity mapped apart from force, after every boundary that holds the node: as the node was held last."""
     held = v
     for b, boundary in ti.static(enumerate(sim.boundaries)):
         if held_by(sim, boundary, i):
-            speed = node_speed(sim, b, i, factor)
-            if ti.static(before):
-                speed += 2.0 * ti.cast(sim.ledger.mean_speed[b] - sim.ledger.speed[b], float)
-            held = boundary.keep(held, speed, factor, kept_state(sim, b, i))
+            held = boundary.keep(held, node_speed(sim, b, i, factor), factor, kept_state(sim, b, i))
     return held
-
-
-@ti.func
-def may_be_held(sim: ti.template(), i):
-    """Whether node i lies where a boundary acts."""
-    found = False
-    for boundary in ti.static(sim.boundaries):
-        found = found or held_by(sim, boundary, i)
-    return found
-
-
-@ti.func
-def book_stopping(sim: ti.template(), momentum, taken):
-    """Energy that boundaries take from a node of musl by stopping what particles bring to it.
-
-    Particles bring it v before a step and r after it, and gain m dv.(v + r)/2. Stress and boundaries work on u, the
-    velocity at which the node strains the rock: v and r as they are held, hold(v) with the step before and hold(r) with
-    this one. So by trapezoidal rule, with m dv = dt f + I of forces and boundaries,
-
-        dt f.(hold_before(v) - v)/2 + I.(hold(v) - v)/2 + m dv.(hold(r) - r)/2
-
-    is lost, as in an inelastic impact, and no impulse's work tells of it: the boundary does not move for it. Each term
-    is booked where both its factors are known: `momentum` [N s] on half of what is `taken` [m/s].
-    """
-    sim.ledger.stopped[0] += ti.cast(0.5 * momentum.dot(taken), ti.f64)
 
 
 @ti.func
@@ -137,7 +106,7 @@ def velocity_of(sim: ti.template(), i, momentum, factor):
     m = sim.nodes.mass[i]
     v = ti.Vector.zero(float, sim.dim)
     if m > SMALL_MASS * full_cell(sim):
-        v = hold(sim, i, 1.0 / m * momentum, factor, False)
+        v = hold(sim, i, 1.0 / m * momentum, factor)
     return v
 
 
@@ -182,12 +151,6 @@ def accelerate(sim: ti.template(), i, velocity: ti.template(), dt, factor):
         if m > nodes.pushed_mass * full_cell(sim):
             v += dt * inverse * nodes.f[i]
         v += dt * ti.Vector(sim.acceleration)
-        pushed = v - v_old
-        books = False  # whether something may be stopped here
-        if ti.static(nodes.remap):
-            books = may_be_held(sim, i)
-        if books:
-            book_stopping(sim, m * pushed, hold(sim, i, v_old, factor, True) - v_old)
         for b, boundary in ti.static(enumerate(sim.boundaries)):
             if held_by(sim, boundary, i):
                 held, state = v, 0
@@ -201,8 +164,6 @@ def accelerate(sim: ti.template(), i, velocity: ti.template(), dt, factor):
                 ledger.latest[b] += work
                 v = held
         dv = v - v_old
-        if books:
-            book_stopping(sim, m * (dv - pushed), hold(sim, i, v_old, factor, True) - v_old)
     nodes.v[i] = v
     nodes.f[i] = dv
 

@@ -9,7 +9,7 @@ import taichi as ti
 from rsmpm_ti.fields.stencil import MAX_RUN, coordinates, gather, run_stop, scatter, weights_and_gradients
 from rsmpm_ti.mpm.contact import clear_gaps
 from rsmpm_ti.mpm.g2p import body_work, book_body_work, book_mixing, velocity_to_particle
-from rsmpm_ti.mpm.nodes import book_stopping, clear_node, may_be_held, over_nodes, velocity_of
+from rsmpm_ti.mpm.nodes import clear_node, over_nodes, velocity_of
 from rsmpm_ti.mpm.p2g import add_particle
 from rsmpm_ti.mpm.wall_nodes import extend, fold
 
@@ -45,10 +45,7 @@ def remap_span(sim: ti.template(), start, stop, slot, what: ti.template(), dt, t
 @ti.func
 def remapped_velocity(sim: ti.template(), i, dt, factor):
     nodes = sim.nodes
-    brought = nodes.v_remapped[i]
-    nodes.v_remapped[i] = velocity_of(sim, i, brought, factor)
-    if may_be_held(sim, i):
-        book_stopping(sim, nodes.f[i], nodes.mass[i] * nodes.v_remapped[i] - brought)
+    nodes.v_remapped[i] = velocity_of(sim, i, nodes.v_remapped[i], factor)
     nodes.v_moving[i] = nodes.v[i]
     clear_node(sim, i, dt, factor)
 
