@@ -76,6 +76,10 @@ def options_of(options: argparse.Namespace) -> Options:
         pressures = tuple(number("confinement", text, "Pa") for text in texts)
         if any(p is None or not 0.0 <= p <= 1e10 or 0.0 < p < 1e3 for p in pressures):
             raise refuse("--confinement", options.confinement, "pressures of 0, or 1 kPa to 10 GPa")
+        if len({f"{1e-6 * p:g}" for p in pressures}) < len(pressures):
+            raise refuse(
+                "--confinement", options.confinement, "pressures that differ", "for more of each, give --seeds"
+            )
     if not 1 <= options.seeds <= MAX_SEEDS:
         raise refuse("--seeds", options.seeds, f"in [1, {MAX_SEEDS}]")
     if options.jobs is not None and options.jobs < 1:
@@ -137,7 +141,7 @@ def main(arguments: list[str] | None = None) -> int:
 
 
 def run(test, sheet, asked: Options, specimens, out: Path, options, arguments: list[str]) -> int:
-    from rsmpm_ti.lab.record import report_of, write_records
+    from rsmpm_ti.lab.record import report_of, set_aside, write_records
     from rsmpm_ti.lab.report.page import write_page
     from rsmpm_ti.lab.running import read_back, run_all
 
@@ -145,6 +149,7 @@ def run(test, sheet, asked: Options, specimens, out: Path, options, arguments: l
     every = [one for seed in specimens for one in seed]
     jobs = min(options.jobs or cores, len(every))
     out.mkdir(parents=True, exist_ok=True)
+    set_aside(out)
     problems = []
     for k, done in enumerate(run_all(every, out / "runs", jobs=jobs, threads=max(1, cores // jobs),
                                      resume=options.resume)):  # fmt: skip

@@ -12,6 +12,7 @@ import math
 
 import numpy as np
 
+from rsmpm_ti.errors import refuse
 from rsmpm_ti.lab.compression import UNEVEN, breakage
 from rsmpm_ti.lab.quantity import Quantity
 from rsmpm_ti.lab.standard import LabTest, Measured, Options, Specimen
@@ -47,8 +48,11 @@ def energy_of(rock: Rock) -> float:
 
 
 def _sizes(sheet: DataSheet, options: Options) -> tuple[float, float]:
-    """Depth or radius, and cell [m], in whole micrometres."""
-    size = options.size or round(DEPTH * characteristic_length(Rock.from_sheet(sheet)), 6)
+    """Depth or radius, and cell [m], in whole micrometres. Raises SceneError for rock without a fracture energy."""
+    rock = Rock.from_sheet(sheet)
+    if math.isnan(energy_of(rock)):
+        raise refuse("law", sheet.law, "'lab' for a test of toughness", f"rock {sheet.name} has no fracture energy")
+    size = options.size or round(DEPTH * characteristic_length(rock), 6)
     return size, options.dx or size / (QUICK_CELLS if options.quick else CELLS)
 
 

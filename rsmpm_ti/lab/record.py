@@ -86,6 +86,18 @@ def _scene(scene: Scene) -> dict:
     }  # fmt: skip
 
 
+FILES = ("report.html", "report.json", "quantities.csv")
+"""Of a report, beside its runs."""
+
+
+def set_aside(out: Path) -> None:
+    """The report of an earlier test becomes `previous.report.html` and so on: if this one comes to no end, none of the
+    runs that are there then is shown by another's numbers."""
+    for name in FILES:
+        if (out / name).is_file():
+            (out / name).replace(out / f"previous.{name}")
+
+
 def write_records(out: Path, report: dict) -> None:
     write_json(out / "report.json", report)
     header = ("name", "value", "unit", "error_95", "given", "over_given", "about")

@@ -4,6 +4,7 @@ import pytest
 
 from rsmpm_ti.lab.__main__ import main, table
 from rsmpm_ti.lab.catalogue import TESTS
+from rsmpm_ti.lab.record import set_aside
 
 
 def test_list_names_every_test_and_its_standard(capsys):
@@ -25,6 +26,7 @@ def test_list_names_every_test_and_its_standard(capsys):
         (["ucs", "--confinement", "5MPa"], "but for triaxial and shear"),
         (["triaxial", "--confinement", "5"], "--confinement = '5' is refused"),
         (["triaxial", "--confinement", "5MPa,,"], "--confinement"),
+        (["triaxial", "--confinement", "0,5MPa,5000kPa"], "pressures that differ"),
         (["ucs", "--seeds", "0"], "--seeds = 0 is refused"),
         (["ucs", "--jobs", "0"], "--jobs = 0 is refused"),
         (["ucs", "--rock", "westerly"], "westerly"),
@@ -61,3 +63,17 @@ def test_what_is_not_defined_is_not_compared():
     report = {"test": "scb", "about": "toughness", "rock": {"name": "granite"}, "doubts": []}
     lines = table(report | {"quantities": [given, alone, found]}).splitlines()[2:]
     assert ["off the sheet" in line for line in lines] == [False, False, True] and "+10 %" in lines[2]
+
+
+@pytest.mark.parametrize("name", ["bend", "scb"])
+def test_rock_without_a_fracture_energy_has_no_toughness(name, capsys):
+    assert main([name, "--rock", "pmma", "--check"]) == 2
+    assert "law = 'paper' is refused" in capsys.readouterr().err.splitlines()[-1]
+
+
+def test_earlier_report_does_not_stand_for_a_test_that_comes_to_no_end(tmp_path):
+    (tmp_path / "report.html").write_text("earlier")
+    (tmp_path / "mine.txt").write_text("of the user")
+    set_aside(tmp_path)
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["mine.txt", "previous.report.html"]
+    assert (tmp_path / "previous.report.html").read_text() == "earlier"
