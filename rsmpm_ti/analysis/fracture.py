@@ -84,10 +84,12 @@ def spacing_of(scene: Scene) -> float:
 def measure_fracture(scene: Scene, history: np.ndarray, events: EventTable, snapshot: Snapshot) -> Fracture:
     """Cracks, fragments and acoustic events of a run from its history, failures and last state.
 
-    With mass scaling every speed of a run is that of the scaled rock, so acoustic events and tip speeds use its waves.
+    With mass scaling every speed of a run is that of the scaled rock, so acoustic events and tip speeds use its waves:
+    those of the scene's own rock, where there are several.
     """
     spacing = spacing_of(scene)
-    shear_speed = float(np.sqrt(scene.rock.elasticity.mu / scene.density))
+    shear_speed = float(np.sqrt(scene.rock.elasticity.mu / scene.rock.density)) / scene.time_scale
+    densities = np.array([rock.density for rock in scene.rocks])
     tips: tuple[FlawTip, ...] = ()
     if scene.dim == 2:
         tips = flaw_tips(tuple(slit for body in scene.bodies for slit in slits_of(body.region)))
@@ -98,10 +100,10 @@ def measure_fracture(scene: Scene, history: np.ndarray, events: EventTable, snap
         cracks=cracks,
         openings=openings(cracks, events, snapshot, scene.domain.dx) if scene.dim == 2 else [],
         initiation=initiations(events, bands, tips, history),
-        fragments=find_fragments(snapshot, scene.rock.density),
+        fragments=find_fragments(snapshot, densities if snapshot.rock is None else densities[snapshot.rock]),
         acoustic=acoustic,
         b=b_value(acoustic.magnitude),
-        rayleigh_speed=rayleigh_speed(shear_speed, scene.wave_speed),
+        rayleigh_speed=rayleigh_speed(shear_speed, scene.rock.wave_speed(scene.time_scale)),
         dim=scene.dim,
         lines=_lines([crack.course for crack in cracks], bands, events, snapshot, spacing),
         time_scale=scene.time_scale,

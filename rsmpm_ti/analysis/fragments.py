@@ -40,8 +40,9 @@ class Fragments:
         return self.pieces[0].mass / self.total_mass if self.pieces and self.total_mass > 0.0 else None
 
 
-def find_fragments(snapshot: Snapshot, density: float) -> Fragments:
-    """Connected components of the intact particles at one instant; density: the rock's own, unscaled [kg/m^3].
+def find_fragments(snapshot: Snapshot, density: float | np.ndarray) -> Fragments:
+    """Connected components of the intact particles at one instant; density: the rock's own, unscaled [kg/m^3], of all
+    particles or of each, [n].
 
     A particle's mass is density times its current volume: intact rock has its initial volume to a part in a thousand.
     Particles that are not finite, after an unstable run, are left out.
@@ -49,11 +50,12 @@ def find_fragments(snapshot: Snapshot, density: float) -> Fragments:
     sound = np.isfinite(snapshot.x).all(axis=1) & np.isfinite(snapshot.velocity).all(axis=1) & (snapshot.volume > 0.0)
     kept = sound & (snapshot.failure_mode == INTACT)
     x, velocity = snapshot.x[kept], snapshot.velocity[kept]
-    mass = density * snapshot.volume[kept]
+    masses = density * snapshot.volume
+    mass, volume = masses[kept], snapshot.volume[kept]
     dim = snapshot.x.shape[1]
-    labels = _components(x, snapshot.volume[kept] ** (1.0 / dim))
+    labels = _components(x, volume ** (1.0 / dim))
     count = np.bincount(labels)
-    total = np.bincount(labels, mass)
+    total, area = np.bincount(labels, mass), np.bincount(labels, volume)
     small = count < DUST
 
     def piece(particles: int, whole: float, member_mass, member_x, member_v, diameter: float) -> Fragment:
@@ -68,14 +70,12 @@ def find_fragments(snapshot: Snapshot, density: float) -> Fragments:
     for k in np.lexsort((np.arange(len(count)), -total)):
         if not small[k]:
             m = members[k]
-            pieces.append(
-                piece(int(count[k]), float(total[k]), mass[m], x[m], velocity[m], _diameter(total[k] / density, dim))
-            )
+            pieces.append(piece(int(count[k]), float(total[k]), mass[m], x[m], velocity[m], _diameter(area[k], dim)))
     dust = None
     if small.any():
         m = small[labels]
         dust = piece(int(m.sum()), float(mass[m].sum()), mass[m], x[m], velocity[m], np.nan)
-    everything = float(density * snapshot.volume[sound].sum())
+    everything = float(masses[sound].sum())
     return Fragments(pieces=tuple(pieces), dust=dust, total_mass=everything)
 
 

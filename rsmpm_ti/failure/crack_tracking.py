@@ -10,6 +10,7 @@ from rsmpm_ti.failure.nonlocal_fields import (
     read_crack_strains,
     sum_needed,
 )
+from rsmpm_ti.failure.of_rock import belongs
 from rsmpm_ti.failure.stress_update import start_failure
 from rsmpm_ti.fields.nonlocal_sums import MAX_NEW_CRACKS
 from rsmpm_ti.fields.stencil import coordinates
@@ -23,7 +24,8 @@ def evaluate_overload(sim: ti.template()):
     particles = sim.particles
     for p in particles.mode:
         particles.overload[p] = 0.0
-        if sim.nonlocal_sums.any_overloaded[None] == 1 and particles.mode[p] == 0 and near_overloaded(sim, p):
+        asked = belongs(sim, p) and sim.nonlocal_sums.any_overloaded[None] == 1 and particles.mode[p] == 0
+        if asked and near_overloaded(sim, p):
             mean = mean_stress(sim, p)
             load = extreme_principals(mean)[0] / strengths(sim, p)[0]
             normal = principal_normal(mean)
@@ -63,7 +65,7 @@ def exclude(sim: ti.template()):
     radius, slope = ti.static(sim.rock.nonlocal_mean.radius, sim.rock.nonlocal_mean.slope)
     count = ti.min(new_cracks.count[None], MAX_NEW_CRACKS)
     for p in particles.mode:
-        if particles.mode[p] == 0:
+        if particles.mode[p] == 0 and belongs(sim, p):
             x = particles.reference[p] + particles.u[p]
             for k in range(count):
                 d = x - new_cracks.x[k]
@@ -74,7 +76,15 @@ def exclude(sim: ti.template()):
 
 
 def track_cracks(sim, time: float) -> None:
-    """The tensile check by the mean stress, after a step, and the openings by which cracks lose strength."""
+    """The tensile check by the mean stress, after a step, and the openings by which cracks lose strength.
+
+    Of each rock for itself: means are over its own particles, and a crack excludes no other rock beside it.
+    """
+    for view in sim.nonlocal_views:
+        _track_cracks(view, time)
+
+
+def _track_cracks(sim, time: float) -> None:
     if not needed_tiles(sim, sim.nonlocal_sums.weakest):
         return
     sum_needed(sim)

@@ -12,6 +12,7 @@ import numpy as np
 import taichi as ti
 
 from rsmpm_ti.failure.nonlocal_fields import mean_stress, sum_nonlocal
+from rsmpm_ti.failure.of_rock import belongs
 from rsmpm_ti.failure.stress_update import own_shear_load
 from rsmpm_ti.rock.criteria import load_factors, strengths
 from rsmpm_ti.rock.tensors import extreme_principals, principal_normal
@@ -42,7 +43,7 @@ def evaluate_damage(
 ):
     particles, law = sim.particles, sim.rock.after_failure
     for p in particles.mode:
-        if particles.mode[p] != 0:
+        if particles.mode[p] != 0 and belongs(sim, p):
             governs[p], damage[p], failed[p] = particles.mode[p], law.damage(sim, p), law.failed_mode(sim, p)
 
 
@@ -54,6 +55,8 @@ def evaluate_margins(
 ):
     particles, criterion = sim.particles, sim.rock.criterion
     for p in particles.mode:
+        if not belongs(sim, p):
+            continue
         if particles.mode[p] == 0:
             load = load_factors(sim, p, extreme_principals(particles.sigma[p]))
             tension = tensile_load(sim, p, load[0] / criterion.tensile_strength)
@@ -65,12 +68,17 @@ def evaluate_margins(
             margin[p] = 0.0
 
 
+def _that_break(sim) -> list:
+    """Views of the rocks that may break."""
+    return [view for view in sim.views if view.rock.criterion.breaks]
+
+
 def damages(sim) -> dict[str, np.ndarray]:
     """`damage`, `failure_mode` and what `governs` it of particles that have begun to crack, [n] each, 0 in others."""
     n = sim.particles.count
     governs, damage, failed = np.zeros(n, dtype=np.int32), np.zeros(n), np.zeros(n, dtype=np.int32)
-    if sim.particles.breaks:
-        evaluate_damage(sim, governs, damage, failed)
+    for view in _that_break(sim):
+        evaluate_damage(view, governs, damage, failed)
     return {"governs": governs, "damage": damage, "failure_mode": failed}
 
 
@@ -81,8 +89,8 @@ def margins(sim) -> dict[str, np.ndarray]:
     NaN, 0, 0 and 0 everywhere in rock that does not break. See `Snapshot` for what they mean in rock that has failed.
     """
     margin, found = np.full(sim.particles.count, np.nan), damages(sim)
-    if sim.particles.breaks:
-        if sim.is_nonlocal:
-            sum_nonlocal(sim)
-        evaluate_margins(sim, margin, found["governs"])
+    for view in _that_break(sim):
+        if view.is_nonlocal:
+            sum_nonlocal(view)
+        evaluate_margins(view, margin, found["governs"])
     return {"margin": margin, **found}

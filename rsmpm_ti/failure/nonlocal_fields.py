@@ -1,11 +1,13 @@
 """Mean stress, crack strain and slip over a length of the rock: spread to nodes, blurred along each axis, read back.
 
 2D. A look for cracks needs them only near what is cracked or has tension of its own beyond the strength, since a mean
-is no larger than the largest that it is taken over; the grid is averaged there, tile by tile, with the same sums.
+is no larger than the largest that it is taken over; the grid is averaged there, tile by tile, with the same sums. Where a
+scene has several rocks, `sim` is the view of one: it has sums of its own, of its own particles.
 """
 
 import taichi as ti
 
+from rsmpm_ti.failure.of_rock import belongs
 from rsmpm_ti.fields.nonlocal_sums import TILE
 from rsmpm_ti.fields.parallel import over_particles
 from rsmpm_ti.fields.stencil import coordinates, per_metre, weights_at
@@ -52,7 +54,8 @@ def needed_tiles(sim: ti.template(), limit: float) -> ti.i32:
         means.hot[tile] = 0
         means.any_hot[None] = 0
     for p in particles.mode:
-        if particles.mode[p] != 0 or extreme_principals(particles.sigma[p])[0] >= (1.0 - ROUNDING) * limit:
+        hot = particles.mode[p] != 0 or extreme_principals(particles.sigma[p])[0] >= (1.0 - ROUNDING) * limit
+        if belongs(sim, p) and hot:
             means.hot[sim.grid.base(coordinates(sim, p, sim.grid.frame()), sim.shape) // TILE] = 1
             means.any_hot[None] = 1
     for tile in ti.grouped(means.needed):
@@ -79,7 +82,7 @@ def add_stress(sim: ti.template(), start, stop, slot, what: ti.template(), dt, t
     for p in range(start, stop):
         xi = coordinates(sim, p, sim.grid.frame())
         base = sim.grid.base(xi, sim.shape)
-        if needed(sim, base) == 0:
+        if needed(sim, base) == 0 or not belongs(sim, p):
             continue
         w, dw = weights_at(sim, xi, base)
         sigma, V_p = particles.sigma[p], particles.volume[p] * sim.rock.after_failure.carrying_ratio(sim, p)
@@ -147,7 +150,7 @@ def read_crack_strains(sim: ti.template()):
     """
     particles = sim.particles
     for p in particles.mode:
-        if particles.mode[p] != 0:
+        if particles.mode[p] != 0 and belongs(sim, p):
             xi = coordinates(sim, p, sim.grid.frame())
             base = sim.grid.base(xi, sim.shape)
             w, slopes = weights_at(sim, xi, base)
@@ -199,7 +202,7 @@ def near_overloaded(sim: ti.template(), p):
 
 
 def sum_nonlocal(sim) -> None:
-    """Fill sim.nonlocal_sums.sums for `mean_stress` and `read_crack_strains`, of all particles."""
+    """Fill sim.nonlocal_sums.sums for `mean_stress` and `read_crack_strains`, of all particles of its rock."""
     need_all_tiles(sim)
     sum_needed(sim)
 

@@ -6,6 +6,7 @@ import numpy as np
 import taichi as ti
 
 from rsmpm_ti.fields.grid import Grid
+from rsmpm_ti.rock.rock import Rock
 from rsmpm_ti.spec.scene import Scene
 
 TILE = 8
@@ -18,10 +19,10 @@ MAX_NEW_CRACKS = 4096
 @ti.data_oriented
 class NonlocalSums:
     """Node fields of averages: sums of V sigma, V, V x crack strain and V x slip, a second copy for blurring, and
-    the largest overload."""
+    the largest overload. Of one rock of a scene, over which alone is averaged."""
 
-    def __init__(self, scene: Scene, grid: Grid, real):
-        filter_weights = scene.rock.nonlocal_mean.filter_weights(scene.domain.dx, scene.shape.variance)
+    def __init__(self, scene: Scene, rock: Rock, grid: Grid, real):
+        filter_weights = rock.nonlocal_mean.filter_weights(scene.domain.dx, scene.shape.variance)
         self.reach, self.filter_weights = len(filter_weights) // 2, ti.field(real, len(filter_weights))
         self.filter_weights.from_numpy(np.array(filter_weights))
         self.sums, self.other = (ti.Vector.field(7, real, grid.nodes) for _ in range(2))
@@ -38,13 +39,13 @@ class NonlocalSums:
         self.result_tiles = -(-(self.reach + 2 * width) // TILE)
         self.source_tiles = -(-(self.reach + width) // TILE)
         band = scene.shape.crack_band * scene.domain.dx
-        self.band_fraction = scene.rock.nonlocal_mean.band_fraction(band)
-        self.variance = scene.rock.nonlocal_mean.band_variance(band)
+        self.band_fraction = rock.nonlocal_mean.band_fraction(band)
+        self.variance = rock.nonlocal_mean.band_variance(band)
         # smallest tensile strength of a particle [Pa], and steps between two looks: the mean over a length cannot
         # change within a quarter of the time that a wave needs for it
-        self.weakest = scene.rock.criterion.tensile_strength
-        travel = scene.wave_speed * scene.dt
-        self.interval = max(1, math.floor(0.25 * scene.rock.nonlocal_mean.length / travel))
+        self.weakest = rock.criterion.tensile_strength
+        travel = rock.wave_speed(scene.time_scale) * scene.dt
+        self.interval = max(1, math.floor(0.25 * rock.nonlocal_mean.length / travel))
         # cracks that have begun at this look: how many, position and normal
         self.count = ti.field(ti.i32, ())
         self.x, self.normal = (ti.Vector.field(2, real, MAX_NEW_CRACKS) for _ in range(2))

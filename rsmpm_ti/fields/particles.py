@@ -8,6 +8,8 @@ import taichi as ti
 from rsmpm_ti.fields.nodes import components
 from rsmpm_ti.rock.after_failure import Variable
 from rsmpm_ti.rock.tensors import PACKED_LENGTH
+from rsmpm_ti.spec.bodies.rocks import variables_of
+from rsmpm_ti.spec.review.memory import averaging
 from rsmpm_ti.spec.scene import Scene
 
 
@@ -43,18 +45,21 @@ class Stored(NamedTuple):
 
 def stored(scene: Scene) -> tuple[Stored, ...]:
     """What `Particles` stores of each particle of a scene, real numbers first, in its order."""
-    dim, rock = scene.dim, scene.rock
-    history = rock.after_failure.history if rock.criterion.breaks else ()
-    of_law = [Stored(v.name, dim if v.per_axis else 1, v.whole) for v in history]
+    dim, rocks = scene.dim, scene.rocks
+    of_law = [Stored(v.name, dim if v.per_axis else 1, v.whole) for v in variables_of(scene)]
     found = [Stored("reference", dim), Stored("u", dim), Stored("v", dim), Stored("sigma", PACKED_LENGTH[dim])]
     found += [Stored("J", 1), Stored("volume", 1)]
-    found += [Stored("C", dim * dim)] * scene.transfer.affine + [Stored("q", 1)] * rock.viscosity.acts
-    found += [Stored("strength", 1)] * rock.heterogeneity.varies + [entry for entry in of_law if not entry.whole]
-    if rock.criterion.breaks and rock.nonlocal_mean.acts:
+    found += [Stored("C", dim * dim)] * scene.transfer.affine + [Stored("q", 1)] * any(
+        rock.viscosity.acts for rock in rocks
+    )
+    found += [Stored("strength", 1)] * any(rock.heterogeneity.varies for rock in rocks)
+    found += [entry for entry in of_law if not entry.whole]
+    if any(averaging(scene)):
         found += [Stored("excluding_normal", dim)]
         found += [Stored("crack_strain_nonlocal", 1), Stored("crack_strain_max_nonlocal", 1)]
         found += [Stored("slip_nonlocal", 1), Stored("slip_max_nonlocal", 1)]
-    found += [Stored("id", 1, True), *[Stored("mode", 1, True)] * rock.criterion.breaks]
+    found += [Stored("id", 1, True), *[Stored("rock", 1, True)] * (len(rocks) > 1)]
+    found += [Stored("mode", 1, True)] * scene.breaks
     return (*found, *(entry for entry in of_law if entry.whole))
 
 
@@ -62,7 +67,8 @@ def stored(scene: Scene) -> tuple[Stored, ...]:
 class Particles:
     """Particle fields, one array per component (SoA), in cell order. `id` is the seeding order.
 
-    Position is reference + displacement: adding 1e-9 m to 0.1 m does nothing in float32.
+    Position is reference + displacement: adding 1e-9 m to 0.1 m does nothing in float32. What any rock of the scene
+    needs is there for all particles; `rock`, the index in `Scene.rocks`, only where there are several.
     """
 
     def __init__(self, scene: Scene, count: int, real):
@@ -76,13 +82,16 @@ class Particles:
         self.L = ti.Matrix.field(dim, dim, real, count, layout=ti.Layout.SOA)  # within a step only: grad v [1/s]
         self.J, self.volume = ti.field(real, count), ti.field(real, count)  # volume: stress-free [m^dim]
         self.id = ti.field(ti.i32, count)
-        self.affine, self.viscous = scene.transfer.affine, scene.rock.viscosity.acts
+        self.affine, self.viscous = scene.transfer.affine, any(rock.viscosity.acts for rock in scene.rocks)
         self.breaking = ti.field(ti.i32, ())  # 0 while bodies settle and may not fail yet
         if scene.loading.settle:
             self.breaking[None] = 1
-        self.breaks, self.varied = scene.rock.criterion.breaks, scene.rock.heterogeneity.varies
+        self.breaks, self.varied = scene.breaks, any(rock.heterogeneity.varies for rock in scene.rocks)
         real_fields = [self.reference, self.u, self.v, self.sigma, self.J, self.volume]
         whole_fields = [self.id]
+        if len(scene.rocks) > 1:
+            self.rock = ti.field(ti.i32, count)
+            whole_fields.append(self.rock)
         if self.affine:
             self.C = ti.Matrix.field(dim, dim, real, count, layout=ti.Layout.SOA)
             real_fields.append(self.C)
@@ -95,10 +104,10 @@ class Particles:
         if self.breaks:
             self.mode = ti.field(ti.i32, count)
             whole_fields.append(self.mode)
-        self.history = LawHistory(scene.rock.after_failure.history if self.breaks else (), dim, count, real)
+        self.history = LawHistory(variables_of(scene), dim, count, real)
         real_fields += self.history.real_fields
         whole_fields += self.history.whole_fields
-        if self.breaks and scene.rock.nonlocal_mean.acts:
+        if any(averaging(scene)):
             # overload is of one step only; excluding_normal: of the crack beside which this particle lies, or 0
             self.overload, self.excluding_normal = ti.field(real, count), vector(dim)
             # crack strain of the rock around, by which tensile strength is lost: as last averaged, and the largest

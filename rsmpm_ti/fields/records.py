@@ -11,7 +11,17 @@ it."""
 
 def event_capacity(scene: Scene, count: int) -> int:
     """Most events of a run of so many particles."""
-    return scene.rock.after_failure.max_events * count if scene.rock.criterion.breaks else 1
+    return most_events(scene) * count if scene.breaks else 1
+
+
+def most_events(scene: Scene) -> int:
+    """Of one particle."""
+    return max(rock.after_failure.max_events for rock in scene.rocks if rock.criterion.breaks)
+
+
+def has_normals(scene: Scene) -> bool:
+    """Whether events tell the normal of a crack; it is 0 in rock whose cracks have none."""
+    return any(rock.criterion.breaks and rock.after_failure.oriented for rock in scene.rocks)
 
 
 @ti.data_oriented
@@ -26,7 +36,7 @@ class Events:
         self.names = ("time", "x", "mode", "sigma_1", "sigma_3", "released", "id")
         self.of_history: tuple = ()  # pairs of a column and the variable of the law that it copies
         capacity = event_capacity(scene, count)
-        if scene.rock.criterion.breaks and scene.rock.after_failure.oriented:
+        if has_normals(scene):
             self.normal = ti.Vector.field(scene.dim, real, capacity)  # unit vector across the crack
             self.names += ("normal",)
             self.of_history = ((self.normal, history.crack_normal),)

@@ -1,5 +1,6 @@
 """What a run holds: particles, background nodes, ledger and events, allocated for one scene and no more."""
 
+import copy
 import math
 from typing import NamedTuple
 
@@ -16,6 +17,7 @@ from rsmpm_ti.fields.particles import Particles
 from rsmpm_ti.fields.records import Events, Ledger, Report
 from rsmpm_ti.method.tensor_product import offsets, rows
 from rsmpm_ti.rock.tensors import PACKED_LENGTH
+from rsmpm_ti.spec.bodies.rocks import rock_indices
 from rsmpm_ti.spec.confinement import confined_volume_ratio
 from rsmpm_ti.spec.ground.in_situ import start_stress
 from rsmpm_ti.spec.loading_start import Affine
@@ -43,23 +45,45 @@ class Seeded(NamedTuple):
     volume: np.ndarray  # as the scene is drawn [m^dim], [n]
     stress: np.ndarray  # along axes [Pa], [n, 3]
     J: np.ndarray  # volume over the stress-free one, [n]
-    J_start: float  # of all together
+    rock: np.ndarray  # index in `Scene.rocks`, [n]
+    J_start: tuple[float, ...]  # of all particles of each rock together
 
 
 def seeded(scene: Scene, seeds: list[Seeds]) -> Seeded:
     """seeds: `scene.particles()`."""
     x, volume = (np.concatenate([getattr(body, name) for body in seeds]) for name in ("x", "volume"))
+    rock = np.repeat(rock_indices(scene), [len(body.x) for body in seeds])
     if scene.loading.initial_stress is not None:
-        stress, J = start_stress(scene, x)
-        return Seeded(x, volume, stress, J, float(volume.sum() / (volume / J).sum()))
+        stress, J = start_stress(scene, x, np.array([one.elasticity.bulk for one in scene.rocks])[rock])
+        of_rock = [rock == k for k in range(len(scene.rocks))]
+        starts = tuple(float(volume[own].sum() / (volume / J)[own].sum()) for own in of_rock)
+        return Seeded(x, volume, stress, J, rock, starts)
     pressure = scene.loading.confinement
-    ratio = confined_volume_ratio(pressure, scene.rock.elasticity)
-    return Seeded(x, volume, -pressure * np.ones((len(x), 3)), np.broadcast_to(ratio, len(x)), ratio)
+    ratios = tuple(confined_volume_ratio(pressure, one.elasticity) for one in scene.rocks)
+    return Seeded(x, volume, -pressure * np.ones((len(x), 3)), np.array(ratios)[rock], rock, ratios)
+
+
+def densities(scene: Scene, all_of: Seeded) -> np.ndarray:
+    """Of the stress-free rock of all particles, without mass scaling [kg/m^dim], [n]."""
+    return np.array([rock.density * J for rock, J in zip(scene.rocks, all_of.J_start, strict=True)])[all_of.rock]
+
+
+def strength_factors(scene: Scene, all_of: Seeded) -> np.ndarray:
+    """Of all particles, [n]: one draw for each rock over all bodies of it."""
+    factors = np.ones(len(all_of.x))
+    for k, rock in enumerate(scene.rocks):
+        own = all_of.rock == k
+        factors[own] = rock.heterogeneity.factors(all_of.x[own], all_of.volume[own])
+    return factors
 
 
 @ti.data_oriented
 class Simulation:
-    """Everything kernels need, as one object: a kernel launch then looks up one template argument, not ten."""
+    """Everything kernels need, as one object: a kernel launch then looks up one template argument, not ten.
+
+    views: for each rock, in the order of `Scene.rocks`, this object as it is where only that rock is asked: the same
+    fields, and of the rock its laws, density, wave speed and means. With one rock that is this object itself.
+    """
 
     def __init__(self, scene: Scene, seeds: list[Seeds], real=ti.f64, gpu: bool = False, deterministic: bool = False):
         self.scene, self.real, self.dim = scene, real, scene.dim
@@ -76,9 +100,8 @@ class Simulation:
             lower, upper = scene.loading.ends
             self.ends = self.boundaries.index(lower), self.boundaries.index(upper), lower.axis
         self.confined = self.confinement > 0.0
-        x, volume, stress, J, self.J_start = seeded(scene, seeds)
-        # of the stress-free rock, to go with `particles.volume`; as it starts it is the scene's
-        self.density, self.wave_speed = scene.density * self.J_start, scene.wave_speed
+        begun = seeded(scene, seeds)
+        self._be_of(0, begun)
         # mass scaling must leave the weight of a body unchanged, so its acceleration shrinks as its density grows
         force = scene.loading.body_force or (0.0,) * scene.dim
         self.lightness = 1.0 / scene.time_scale**2
@@ -101,14 +124,31 @@ class Simulation:
             Events(scene, count, real, self.particles.history),
             Ledger(scene, self.traversal.count),
         )
-        self.is_nonlocal = scene.rock.criterion.breaks and scene.rock.nonlocal_mean.acts
-        if self.is_nonlocal:
-            self.nonlocal_sums = NonlocalSums(scene, self.grid, real)
         self.report = Report(scene)
-        self._fill(scene, seeds, x, volume, stress, J)
+        self.several = len(scene.rocks) > 1
+        self.views = tuple(copy.copy(self) if self.several else self for _ in scene.rocks)
+        for k, view in enumerate(self.views):
+            view._be_of(k, begun)
+            if view.is_nonlocal:
+                view.nonlocal_sums = NonlocalSums(scene, view.rock, self.grid, real)
+        self.nonlocal_views = tuple(view for view in self.views if view.is_nonlocal)
+        self.is_nonlocal = bool(self.nonlocal_views)
+        # steps between two looks for cracks by mean stress
+        self.look_interval = min((view.nonlocal_sums.interval for view in self.nonlocal_views), default=0)
+        self._fill(scene, seeds, begun)
 
-    def _fill(self, scene: Scene, seeds: list[Seeds], x, volume, stress, J) -> None:
-        """Particles as they start: x [m], [n, dim]; volume [m^dim], [n]; stress along axes [Pa], [n, 3]; J, [n]."""
+    def _be_of(self, index: int, begun: Seeded) -> None:
+        """Of one rock of the scene."""
+        scene = self.scene
+        self.index, self.rock, self.J_start = index, scene.rocks[index], begun.J_start[index]
+        # of the stress-free rock, to go with `particles.volume`; as it starts it is the scene's
+        self.density = self.rock.density * scene.time_scale**2 * self.J_start
+        self.wave_speed = self.rock.wave_speed(scene.time_scale)
+        self.is_nonlocal = self.rock.criterion.breaks and self.rock.nonlocal_mean.acts
+
+    def _fill(self, scene: Scene, seeds: list[Seeds], begun: Seeded) -> None:
+        """Particles as they start."""
+        x, volume, stress, J, rock, _ = begun
         kind = np.float64 if self.real == ti.f64 else np.float32
         particles = self.particles
         v = np.concatenate([initial_velocity(scene, k, body.x) for k, body in enumerate(seeds)])
@@ -124,11 +164,13 @@ class Simulation:
             packed[:, :3] = stress[order]
             particles.sigma.from_numpy(packed)
         particles.id.from_numpy(order.astype(np.int32))
+        if self.several:
+            particles.rock.from_numpy(rock[order].astype(np.int32))
         if particles.varied:
-            strength = scene.rock.heterogeneity.factors(x, volume)  # one draw over all bodies
+            strength = strength_factors(scene, begun)
             particles.strength.from_numpy(strength[order].astype(kind))
-            if self.is_nonlocal:
-                self.nonlocal_sums.weakest *= float(strength.min())
+            for view in self.nonlocal_views:
+                view.nonlocal_sums.weakest *= float(strength[rock == view.index].min())
 
 
 def initial_velocity(scene: Scene, body_index: int, x: np.ndarray) -> np.ndarray:

@@ -78,7 +78,9 @@ def check_step(scene) -> None:
     schedule = scene.schedule
     limit = stable_cfl(scene) * smallest_spacing(scene) / scene.wave_speed
     transit = scene.domain.dx / scene.wave_speed
-    true_transit = scene.domain.dx / scene.rock.wave_speed()  # without mass scaling: what the paper's digits are
+    true_transit = scene.domain.dx / max(
+        rock.wave_speed() for rock in scene.rocks
+    )  # without mass scaling: what the paper's digits are
     if MIN_CFL * transit <= scene.dt <= limit:
         name = "t_end" if schedule.strain_end is None else "strain_end"
         count = scene.t_end / scene.dt

@@ -81,13 +81,13 @@ class Clock:
         while self.step < last:
             chunk = last - self.step
             if self._sim.is_nonlocal:  # a look comes after steps 1, 1 + interval, 1 + 2 interval ...
-                interval = self._sim.nonlocal_sums.interval
+                interval = self._sim.look_interval
                 chunk = min(chunk, (-self.step) % interval + 1)
             factors = self._factors(chunk)
             self._pass_list(self._sim, self.dt, self.time, factors)
             self.step += chunk
             self._loaded += chunk * self.pace * self.dt
-            if self._sim.is_nonlocal and self.tracks and (self.step - 1) % self._sim.nonlocal_sums.interval == 0:
+            if self._sim.is_nonlocal and self.tracks and (self.step - 1) % self._sim.look_interval == 0:
                 track_cracks(self._sim, self.time)
 
     def _factors(self, steps: int) -> list[float]:

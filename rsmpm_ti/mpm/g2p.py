@@ -6,7 +6,7 @@ same way: v_pic = sum_i w_ip v_i, and its gradient is L = sum_i v_i (x) grad w_i
 
 import taichi as ti
 
-from rsmpm_ti.failure.stress_update import check_failure, must_check, update_stress
+from rsmpm_ti.failure.of_rock import check, density_at, needs_check, strain_step
 from rsmpm_ti.fields.stencil import (
     MAX_RUN,
     coordinates,
@@ -70,7 +70,7 @@ def body_work(sim: ti.template(), p, v_middle, dt, time):
     With mass scaling m grows and b shrinks by the same factor, and W is that of the true weight.
     """
     b = ti.Vector(sim.acceleration) + field_acceleration(sim, p, time - dt)
-    return ti.cast(dt * v_middle.dot(b) * sim.density * sim.particles.volume[p], ti.f64)
+    return ti.cast(dt * v_middle.dot(b) * density_at(sim, p) * sim.particles.volume[p], ti.f64)
 
 
 @ti.func
@@ -106,7 +106,7 @@ def nodes_to_particles(sim: ti.template(), start, stop, slot, what: ti.template(
             if ti.static(what.velocity):
                 v_middle, taken = velocity_to_particle(sim, p, w, xi, base, frame, v_i, dv_i, slot)
                 work += body_work(sim, p, v_middle, dt, time)
-                lost += ti.cast(taken * sim.density * particles.volume[p], ti.f64)
+                lost += ti.cast(taken * density_at(sim, p) * particles.volume[p], ti.f64)
             if ti.static(what.position):
                 v_pic = interpolate(sim, w, v_i)
                 # not +=, which is an atomic add on a field
@@ -123,13 +123,13 @@ def new_stress(sim: ti.template(), start, stop, slot, what: ti.template(), dt, t
     viscous = ti.cast(0.0, ti.f64)
     found = 0
     for p in range(start, stop):
-        viscous += ti.cast(update_stress(sim, p, sim.particles.L[p], dt), ti.f64)
+        viscous += ti.cast(strain_step(sim, p, sim.particles.L[p], dt), ti.f64)
         if ti.static(sim.particles.breaks):
-            found += must_check(sim, p)
+            found += needs_check(sim, p)
     sim.ledger.viscous[slot] = sim.ledger.viscous[slot] + viscous
     if ti.static(sim.particles.breaks):
         if ti.static(sim.grid.settles):
             found *= sim.particles.breaking[None]
         if found > 0:  # else no particle here has failed or is about to
             for p in range(start, stop):
-                check_failure(sim, p, dt, time, slot)
+                check(sim, p, dt, time, slot)

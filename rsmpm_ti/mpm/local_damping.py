@@ -15,6 +15,8 @@ that of a force that goes along with the platens.
 
 import taichi as ti
 
+from rsmpm_ti.failure.of_rock import density_at
+
 UNDAMPED = -1
 """In place of a slot of the ledger: a change of velocity that is no part of the motion."""
 
@@ -47,7 +49,7 @@ def damped(sim: ti.template(), p, v_old, v, dv, slot):
             found = ti.select(sim.particles.mode[p] == 0, found, v)
         if slot == UNDAMPED:
             found = v  # and nothing is booked: all that follows is 0
-        mass, taken = sim.density * sim.particles.volume[p], found - v
+        mass, taken = density_at(sim, p) * sim.particles.volume[p], found - v
         work = ti.cast(mass * taken.dot(motion), ti.f64)
         lost = -ti.cast(mass * taken.dot(0.5 * (found + v_old) - motion), ti.f64)
         booked = ti.max(slot, 0)

@@ -10,6 +10,7 @@ is meant. Sums are taken run by run (see stencil.py) and row by row (see tensor_
 
 import taichi as ti
 
+from rsmpm_ti.failure.of_rock import carried_stress, density_at
 from rsmpm_ti.fields.stencil import MAX_RUN, coordinates, run_stop, scatter, scatter_mass, weights_and_gradients
 from rsmpm_ti.method.tensor_product import row_gradient, row_weight
 from rsmpm_ti.mpm.contact import find_gaps
@@ -23,10 +24,9 @@ def stress_on_nodes(sim: ti.template(), p):
     V_p is the volume that carries stress, V all of it, with what cracks are open by.
     """
     particles = sim.particles
-    sigma = sim.rock.viscosity.added_to(sim, p, particles.sigma[p])
-    carried = particles.volume[p] * sim.rock.after_failure.carrying_ratio(sim, p) * sigma
+    carried = carried_stress(sim, p)
     if ti.static(sim.confined):
-        carried += isotropic(sim.confinement * particles.volume[p] * particles.J[p], sigma.n)
+        carried += isotropic(sim.confinement * particles.volume[p] * particles.J[p], carried.n)
     return carried
 
 
@@ -108,7 +108,7 @@ def add_particle(
     A uniform body force is added at the nodes, where it costs less.
     """
     last = ti.static(sim.dim - 1)
-    m_p = sim.density * sim.particles.volume[p]
+    m_p = density_at(sim, p) * sim.particles.volume[p]
     mv_p, sigma = m_p * sim.particles.v[p], sim.grid.along_grid(unpack(stress_on_nodes(sim, p)))
     body_force = m_p * field_acceleration(sim, p, time)
     for row, nodes in ti.static(sim.rows):

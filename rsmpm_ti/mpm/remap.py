@@ -6,6 +6,7 @@ Schreyer (1995), sec. 3.
 
 import taichi as ti
 
+from rsmpm_ti.failure.of_rock import density_at
 from rsmpm_ti.fields.stencil import MAX_RUN, coordinates, gather, run_stop, scatter, weights_and_gradients
 from rsmpm_ti.mpm.contact import clear_gaps
 from rsmpm_ti.mpm.g2p import body_work, book_body_work, book_mixing, velocity_to_particle
@@ -33,7 +34,7 @@ def remap_span(sim: ti.template(), start, stop, slot, what: ti.template(), dt, t
             w, dw = weights_and_gradients(sim, xi, base, frame)
             v_middle, taken = velocity_to_particle(sim, p, w, xi, base, frame, v_i, dv_i, slot)
             work += body_work(sim, p, v_middle, dt, time)
-            lost += ti.cast(taken * sim.density * sim.particles.volume[p], ti.f64)
+            lost += ti.cast(taken * density_at(sim, p) * sim.particles.volume[p], ti.f64)
             add_particle(sim, p, xi, base, frame, w, dw, 0.0, m, mv, f)
         # mass is the same, and force comes from the new stress: the compiler leaves their sums out
         scatter(sim, nodes.v_remapped, base, mv)

@@ -59,16 +59,18 @@ def load_name(scene: Scene) -> str:
 
 
 def softens(scene: Scene) -> bool:
-    """Whether the rock of a scene loses its strength while it cracks, not at once."""
-    return scene.rock.after_failure.softens
+    """Whether any rock of a scene loses its strength while it cracks, not at once."""
+    return any(rock.after_failure.softens for rock in scene.rocks)
 
 
 def stress_limit(scene: Scene, load: float | None) -> float:
-    """Colour limit [Pa]: 1.5 times the tensile strength, or for an elastic run a tenth of the load expected."""
+    """Colour limit [Pa]: 1.5 times the tensile strength, of the strongest rock, or for an elastic run a tenth of the
+    load expected."""
     if scene.output.stress_limit is not None:
         return scene.output.stress_limit
-    if isinstance(scene.rock.criterion, MohrCoulomb):
-        return 1.5 * scene.rock.criterion.tensile_strength
+    criteria = [rock.criterion for rock in scene.rocks if isinstance(rock.criterion, MohrCoulomb)]
+    if criteria:
+        return 1.5 * max(criterion.tensile_strength for criterion in criteria)
     return 0.1 * load if load else 1e6
 
 
@@ -85,13 +87,14 @@ def load_limits(scene: Scene, volume: float) -> tuple[float | None, float | None
     """Ends of the inset's axes: the last strain, or under a held force the largest, and the nominal stress of a
     uniformly strained body of this volume.
 
-    That is an upper bound of the elastic load (Voigt); the strength bounds it too. Confinement adds its pressure.
+    That is an upper bound of the elastic load (Voigt), of the stiffest rock; the strength of the strongest bounds it
+    too. Confinement adds its pressure.
     """
     cell = scene.loading.load_cell
     if scene.loading.ends is None or cell is None or cell.width is None:
         return None, None
     strain = abs(scene.schedule.strain_end or scene.loading.strain_rate * scene.t_end)
-    modulus = scene.rock.elasticity.uniaxial_modulus(scene.dim)
+    modulus = max(rock.elasticity.uniaxial_modulus(scene.dim) for rock in scene.rocks)
     stiffness = modulus * volume / (scene.loading.height * cell.width)
     held = [abs(side.force) for side in held_sides(scene) if side.axis == scene.loading.ends[0].axis]
     if held:
@@ -99,6 +102,7 @@ def load_limits(scene: Scene, volume: float) -> tuple[float | None, float | None
     if strain == 0.0:  # ends that stand still
         return None, None
     load = stiffness * strain + scene.loading.confinement
-    if isinstance(scene.rock.criterion, MohrCoulomb):
-        load = min(load, 1.05 * scene.rock.criterion.strength(scene.loading.confinement))
+    criteria = [rock.criterion for rock in scene.rocks if isinstance(rock.criterion, MohrCoulomb)]
+    if len(criteria) == len(scene.rocks):
+        load = min(load, 1.05 * max(criterion.strength(scene.loading.confinement) for criterion in criteria))
     return strain, load

@@ -43,6 +43,7 @@ class Snapshot:
     # laws; where it failed in shear, of sigma_1 then; [n]
     crack_angle: np.ndarray
     history: dict[str, np.ndarray] = field(default_factory=dict)  # what the law after failure remembers, by name
+    rock: np.ndarray | None = None  # index in `Scene.rocks`, int8 [n]; None of a run of one rock
 
 
 @dataclass(frozen=True)

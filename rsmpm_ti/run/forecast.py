@@ -13,6 +13,7 @@ import numpy as np
 from rsmpm_ti.fields.particles import stored
 from rsmpm_ti.method.shape import Gimp
 from rsmpm_ti.spec.review.machine import free_disk
+from rsmpm_ti.spec.review.memory import averaging
 
 UNITS = {(2, 2): 17.0, (2, 3): 28.0, (3, 2): 56.0, (3, 3): 123.0}
 """Time of a particle's step over that of the loop's, by dimension and nodes of the shape function per axis."""
@@ -51,9 +52,9 @@ def disk(scene, count: int) -> tuple[float, float, float]:
     film = FILMED * (output.frames + 1) if output.movie and output.frames else 0.0
     files = 0.0 if output.vtu == 0 else (output.vtu + 1) * VTU[scene.dim] * count
     kept = sum((4.0 if entry.whole else 8.0) * entry.size for entry in stored(scene)) + 4.0
-    if scene.rock.criterion.breaks:
+    if scene.breaks:
         kept += PATTERN + 16.0 * scene.dim + FAILING * (8.0 * (4 + scene.dim) + 8.0)
-    picture = SHADED if scene.rock.criterion.breaks and scene.rock.nonlocal_mean.acts else PICTURE
+    picture = SHADED if any(averaging(scene)) else PICTURE
     return picture * pictures + film, files, CHECKPOINTS * kept * count
 
 
@@ -75,11 +76,11 @@ def size(count: float) -> str:
 
 def particle_step(scene) -> float:
     """Time of one particle's step, in units of `unit`."""
-    rock, width = scene.rock, min(max(scene.shape.width, 2), 3)
+    width = min(max(scene.shape.width, 2), 3)
     cost = UNITS[scene.dim, width] * (GIMP if isinstance(scene.shape, Gimp) else 1.0)
     cost *= AFFINE if scene.transfer.affine else 1.0
-    if rock.criterion.breaks:
-        cost += BREAKS[scene.dim] + NONLOCAL * rock.nonlocal_mean.acts
+    if scene.breaks:
+        cost += BREAKS[scene.dim] + NONLOCAL * sum(averaging(scene))
     return cost
 
 

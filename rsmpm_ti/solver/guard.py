@@ -5,6 +5,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from rsmpm_ti.errors import BrokenApart, UnstableRun
+from rsmpm_ti.fields.records import most_events
 from rsmpm_ti.fields.state import Simulation
 from rsmpm_ti.mpm.clock import Clock
 from rsmpm_ti.solver.survey import Survey
@@ -39,9 +40,9 @@ def guard(sim: Simulation, clock: Clock, survey: Survey) -> None:
         where = f" (one started at {np.array2string(1e3 * reference, precision=3)} mm)"
     at = f"at step {clock.step}, t = {clock.time:.6g} s"
     if survey.failed_tension + survey.failed_shear > sim.events.capacity:
-        law = sim.rock.after_failure
+        laws = {type(rock.after_failure).__name__: None for rock in sim.scene.rocks if rock.criterion.breaks}
         raise UnstableRun(
-            f"{type(law).__name__} made more than max_events = {law.max_events} events of a particle {at}; likely "
+            f"{', '.join(laws)} made more than max_events = {most_events(sim.scene)} events of a particle {at}; likely "
             f"cause: its failed_mode changes back, or max_events is too small"
         )
     if survey.sick:

@@ -9,6 +9,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 import taichi as ti
 
+from rsmpm_ti.failure.of_rock import J_at_start
 from rsmpm_ti.fields.cell_order import sort_particles
 from rsmpm_ti.fields.state import Simulation
 from rsmpm_ti.fields.stencil import coordinates
@@ -45,7 +46,7 @@ def park(sim: ti.template()):
         frame = sim.grid.frame()
         if left_domain(sim, coordinates(sim, p, frame)):
             particles.volume[p] = 0.0
-            particles.J[p] = sim.J_start
+            particles.J[p] = J_at_start(sim, p)
             for d in ti.static(range(sim.dim)):
                 middle = frame[d, 0] + 0.5 * (sim.grid.nodes[d] - 1) * frame[d, 2]
                 particles.u[p][d] = middle - particles.reference[p][d]
@@ -64,10 +65,15 @@ def drop(sim: Simulation, before: Survey, dropped: Dropped) -> tuple[Survey, Dro
     volume = sim.particles.volume.to_numpy()
     park(sim)
     gone = (sim.particles.volume.to_numpy() == 0.0) & (volume != 0.0)
+    rock = sim.particles.rock.to_numpy() if sim.several else np.zeros(len(volume), dtype=int)
+    masses = (
+        view.rock.density * view.J_start * float(volume[gone & (rock == view.index)].sum(dtype=np.float64))
+        for view in sim.views
+    )
     dropped = replace(
         dropped,
         count=dropped.count + int(gone.sum()),
-        mass=dropped.mass + sim.scene.rock.density * sim.J_start * float(volume[gone].sum(dtype=np.float64)),
+        mass=dropped.mass + sum(masses),
     )
     if dropped.count < sim.particles.count:
         sort_particles(sim)

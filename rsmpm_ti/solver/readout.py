@@ -23,7 +23,7 @@ class Readout:
     fields: dict[str, np.ndarray]  # of `Particles`, by name, those that the rock has; and what `margins` returns
     failed: tuple[np.ndarray, np.ndarray]  # id and time [s] of the failure events, in no order
     history: dict[str, np.ndarray]  # what the law after failure remembers, by name
-    oriented: bool  # whether that has the normal of a crack
+    oriented: np.ndarray  # whether the crack of a particle has a normal, [n]
 
     def snapshot(self) -> Snapshot:
         """The particles in the order of their ids, without those that were dropped."""
@@ -45,8 +45,8 @@ class Readout:
         sigma_1, sigma_3 = extreme_stresses(packed)
         history = {name: values.take(order, axis=0) for name, values in self.history.items()}
         crack_angle = np.full(n, np.nan)
-        if self.oriented:
-            begun = column("mode", np.int8) > 0
+        if self.oriented.any():
+            begun = (column("mode", np.int8) > 0) & self.oriented.take(order)
             across, up = history["crack_normal"][begun, :2].astype(np.float64).T
             crack_angle[begun] = np.degrees(np.arctan2(up, across)) % 180.0
         return Snapshot(
@@ -68,6 +68,7 @@ class Readout:
             aperture=column("aperture") if "aperture" in fields else np.full(n, np.nan),
             crack_angle=crack_angle,
             history=history,
+            rock=column("rock", np.int8) if "rock" in fields else None,
         )
 
     def _failure_times(self) -> np.ndarray:
@@ -83,20 +84,26 @@ def read_out(sim: Simulation, time: float) -> Readout:
     """Copy what a snapshot is made of."""
     particles, events = sim.particles, sim.events
     names = ["id", "reference", "u", "v", "sigma", "volume", "J"]
-    names += ["mode"] * particles.breaks + ["strength"] * particles.varied
+    names += ["mode"] * particles.breaks + ["strength"] * particles.varied + ["rock"] * sim.several
     fields = {name: getattr(particles, name).to_numpy() for name in names}
     fields |= margins(sim)
     history = particles.history.to_numpy()
-    aperture = sim.rock.after_failure.aperture(history, sim.band) if particles.breaks else None
-    if aperture is not None:
-        fields["aperture"] = aperture
+    rock = fields.get("rock")
+    oriented = np.zeros(particles.count, dtype=bool)
+    for view in sim.views:
+        law, own = view.rock.after_failure, (rock == view.index if sim.several else slice(None))
+        if view.rock.criterion.breaks:
+            oriented[own] = law.oriented
+            aperture = law.aperture({name: values[own] for name, values in history.items()}, sim.band)
+            if aperture is not None:
+                fields.setdefault("aperture", np.full(particles.count, np.nan))[own] = aperture
     count = min(events.count[None], events.capacity)
     return Readout(
         time=time,
         fields=fields,
         failed=(events.id.to_numpy()[:count], events.time.to_numpy()[:count]),
         history=history,
-        oriented=particles.breaks and sim.rock.after_failure.oriented,
+        oriented=oriented,
     )
 
 

@@ -5,6 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 import taichi as ti
 
+from rsmpm_ti.failure.of_rock import J_at_start, density_at, energy_and_gap
 from rsmpm_ti.fields.records import SCALARS
 from rsmpm_ti.fields.state import Simulation
 from rsmpm_ti.fields.stencil import coordinates
@@ -57,21 +58,18 @@ def _survey(sim: ti.template()):
     """Fill sim.report; its fields first, the vector of all of them last, so that one copy brings them to Python."""
     for k in range(1):
         clear_report(sim, k)
-    particles, grid, rock, report = sim.particles, sim.grid, sim.rock, sim.report
+    particles, grid, report = sim.particles, sim.grid, sim.report
     ti.loop_config(serialize=sim.traversal.ordered)
     for p in range(particles.count):
         frame = grid.frame()
         v = particles.v[p]
-        m_p = sim.density * particles.volume[p]
+        m_p = density_at(sim, p) * particles.volume[p]
         sigma, J = particles.sigma[p], particles.J[p]
-        stored, J_intact, J_open = J * rock.elasticity.energy(sigma), J, J  # J_open: of what may not gape
-        J_whole = J
+        stored, gap = energy_and_gap(sim, p)
+        J_intact, J_whole, J_open = J, J, ti.select(gap == 1, 1.0, J)  # J_open: of what may not gape
         if ti.static(particles.breaks):
             if particles.mode[p] != 0:
                 J_intact, J_whole = 0.0, 1e30
-                stored = rock.after_failure.stored(sim, p)
-                if rock.after_failure.is_open(sim, p) == 1:
-                    J_open = 1.0
         xi = coordinates(sim, p, frame)
         sick, not_finite = 0, 0
         if left_domain(sim, xi):
@@ -94,7 +92,7 @@ def _survey(sim: ti.template()):
             report.kinetic[None] += ti.cast(0.5 * m_p * v.dot(v), ti.f64)
             report.elastic[None] += ti.cast(particles.volume[p] * stored, ti.f64)
             # the confining pressure's work: p times the volume that the bodies gave way
-            report.work[None] += ti.cast(sim.confinement * particles.volume[p] * (sim.J_start - J), ti.f64)
+            report.work[None] += ti.cast(sim.confinement * particles.volume[p] * (J_at_start(sim, p) - J), ti.f64)
             ti.atomic_max(report.speed[None], ti.cast(v.norm(), ti.f64))
             ti.atomic_min(report.J_min[None], ti.cast(J, ti.f64))
             ti.atomic_max(report.J_max[None], ti.cast(J_open, ti.f64))

@@ -10,7 +10,6 @@ from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import Annotated, Literal
 
-import numpy as np
 from annotated_types import Interval, Len
 
 from rsmpm_ti.checks import MAX_SIZE, ByType, Finite, NotNegative, Positive, Remedy, checked
@@ -21,8 +20,9 @@ from rsmpm_ti.method.transfer import Apic, PicFlip
 from rsmpm_ti.rock.criteria import Unbreakable
 from rsmpm_ti.rock.heterogeneity import check_scale
 from rsmpm_ti.rock.rock import Rock
+from rsmpm_ti.spec.bodies.rocks import check_each_rock, check_histories, check_rocks, rocks_of
+from rsmpm_ti.spec.bodies.seeds import seeds_of
 from rsmpm_ti.spec.boundaries import Fixed, Platen, Wall
-from rsmpm_ti.spec.confinement import check_confined_rock
 from rsmpm_ti.spec.domain import Domain
 from rsmpm_ti.spec.ground.gravity import ForceField, Gravity, check_gravity
 from rsmpm_ti.spec.ground.in_situ import InSitu, check_initial_stress
@@ -32,10 +32,7 @@ from rsmpm_ti.spec.loading_start import Affine, AtRest, Press, Program, Ramp
 from rsmpm_ti.spec.mass_scaling import MAX_TIME_SCALE, estimate
 from rsmpm_ti.spec.quasi_static.servo import AUTO_DAMPING, Servo, check_quasi_static
 from rsmpm_ti.spec.regions import Region
-from rsmpm_ti.spec.review.memory import check_memory, check_seeding
-from rsmpm_ti.spec.review.placement import check_flaws, check_overlap, check_platens
 from rsmpm_ti.spec.review.plausible import blamed
-from rsmpm_ti.spec.review.slit_check import Turn, check_cuts
 from rsmpm_ti.spec.scene_checks import check_bodies, check_cracks, check_loading, check_motion, check_stop
 from rsmpm_ti.spec.seeding import Jittered, Lattice, Seeds
 from rsmpm_ti.units import Acceleration, LengthOrArea, Pressure, Spin, Time, Velocity
@@ -56,9 +53,14 @@ takes 1.8 (B-splines) to 2.3 (linear) times as long, with one every ten 1.06 to 
 @checked("body")
 @dataclass(frozen=True, kw_only=True)
 class Body:
-    """Material that fills a region. Initial velocity [m/s] and, in the x-y plane, spin [rad/s] about its centre."""
+    """Material that fills a region. Initial velocity [m/s] and, in the x-y plane, spin [rad/s] about its centre.
+
+    rock: of this body where it is not the scene's. Bodies that touch are bonded. They must not overlap: an inclusion
+    is a body, and so is the rest, a `Difference` of the whole and the inclusion's region.
+    """
 
     region: Region
+    rock: Rock | None = None
     seeding: Annotated[Lattice | Jittered, ByType] = Lattice()
     velocity: tuple[Annotated[Velocity, Finite], ...] | None = None
     spin: Annotated[Spin, Finite] = 0.0
@@ -209,7 +211,10 @@ def unchecked():
 @checked("scene")
 @dataclass(frozen=True, kw_only=True)
 class Scene:
-    """One numerical experiment, complete. One rock per scene; 2D is plane strain unless its rock says otherwise."""
+    """One numerical experiment, complete. 2D is plane strain unless its rock says otherwise.
+
+    rock: that of every body which names no other.
+    """
 
     title: str
     domain: Domain
@@ -238,12 +243,7 @@ class Scene:
                 "scene.order = 'usl' with Linear shape functions is refused: its critical step tends to 0 when a "
                 "particle has just entered an empty cell; use 'musl' or 'usf', or another shape function"
             )
-        if self.dim == 3 and self.rock.elasticity.plane_stress:
-            raise refuse("rock.elasticity.plane_stress", True, "False in 3D", "a plate is a 2D scene")
-        if self.domain.outside == "grow" and self.rock.nonlocal_mean.acts:
-            remedy = "enlarge the domain: averages lie on a dense grid"
-            raise refuse("domain.outside", "grow", "'stop' or 'drop' in rock with rock.nonlocal_mean", remedy)
-        check_confined_rock(self.loading.confinement, self.rock.elasticity)
+        check_rocks(self)
         check_initial_stress(self)
         check_gravity(self)
         check_settling(self)
@@ -251,16 +251,30 @@ class Scene:
         check_bodies(self)
         check_loading(self)
         check_stop(self)
-        check_cracks(self.rock, self.shape, self.dim, self.domain.dx)
+        check_each_rock(self, lambda rock: check_cracks(rock, self.shape, self.dim, self.domain.dx))
+        check_histories(self)
         for body in self.bodies:
             volume = (self.domain.dx / body.seeding.particles_per_axis) ** self.dim
-            check_scale(self.rock.heterogeneity, volume, self.dim)
+            check_scale(self.rock_of(body).heterogeneity, volume, self.dim)
         check_step(self)
         check_motion(self)
 
     @property
     def dim(self) -> int:
         return self.domain.dim
+
+    @cached_property
+    def rocks(self) -> tuple[Rock, ...]:
+        """Each once: the scene's, then others in the order of bodies."""
+        return rocks_of(self)
+
+    def rock_of(self, body: Body) -> Rock:
+        return self.rock if body.rock is None else body.rock
+
+    @property
+    def breaks(self) -> bool:
+        """Whether any of its rocks may break."""
+        return any(rock.criterion.breaks for rock in self.rocks)
 
     @cached_property
     def time_scale(self) -> float:
@@ -283,17 +297,17 @@ class Scene:
 
     @property
     def _auto(self) -> bool:
-        return self.loading.time_scale == "auto" and self.rock.criterion.breaks
+        return self.loading.time_scale == "auto" and self.breaks
 
     @property
     def wave_speed(self) -> float:
-        """P-wave speed with mass scaling [m/s]."""
-        return self.rock.wave_speed(self.time_scale)
+        """P-wave speed with mass scaling [m/s], that of the fastest rock."""
+        return max(rock.wave_speed(self.time_scale) for rock in self.rocks)
 
     @property
     def density(self) -> float:
-        """Density with mass scaling [kg/m^3]."""
-        return self.rock.density * self.time_scale**2
+        """Density with mass scaling [kg/m^3], that of the densest rock."""
+        return max(rock.density for rock in self.rocks) * self.time_scale**2
 
     @property
     def dt(self) -> float:
@@ -321,23 +335,14 @@ class Scene:
         return max(1, self.steps // DEFAULT_ROWS, min(ROW_STEPS, self.steps // LEAST_ROWS))
 
     def particles(self) -> list[Seeds]:
-        """Initial positions and volumes of each body's particles; refuses empty bodies, two in one place, tied slits,
-        and platens within a body."""
-        check_seeding(self)
-        check_flaws(self)
-        origin = np.array(self.domain.lower, dtype=float)
-        turn = Turn(np.array(self.domain.middle), self.domain.turn) if self.domain.turn else None
-        seeds = []
-        for k, body in enumerate(self.bodies):
-            check_cuts(body, self.shape, self.domain.dx, origin, turn)
-            seeds.append(body.seeding.fill(body.region, origin, self.domain.dx))
-            if len(seeds[-1].x) == 0:
-                raise SceneError(f"bodies[{k}].region holds no particle: it is smaller than dx = {self.domain.dx} m")
-        check_memory(self, sum(len(body.x) for body in seeds))
-        check_overlap(self, seeds)
-        check_platens(self, seeds)
-        return seeds
+        """Initial positions and volumes of each body's particles, checked: see `bodies/seeds.py`."""
+        return seeds_of(self)
 
     def elastic(self) -> "Scene":
-        """The same scene without failure."""
-        return replace(self, rock=replace(self.rock, criterion=Unbreakable()))
+        """The same scene without failure, in any of its rocks."""
+
+        def whole(rock: Rock) -> Rock:
+            return replace(rock, criterion=Unbreakable())
+
+        bodies = tuple(body if body.rock is None else replace(body, rock=whole(body.rock)) for body in self.bodies)
+        return replace(self, rock=whole(self.rock), bodies=bodies)

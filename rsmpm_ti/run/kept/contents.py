@@ -11,8 +11,8 @@ import numpy as np
 from rsmpm_ti.fields.contacts import NOTHING_NEAR
 from rsmpm_ti.fields.geometry import Geometry
 from rsmpm_ti.fields.particles import stored
-from rsmpm_ti.fields.records import NEVER
-from rsmpm_ti.fields.state import seeded
+from rsmpm_ti.fields.records import NEVER, most_events
+from rsmpm_ti.fields.state import densities, seeded, strength_factors
 from rsmpm_ti.method.time_step import MAX_COUNT
 from rsmpm_ti.records.history_table import HISTORY_COLUMNS
 from rsmpm_ti.run.kept.reading import need
@@ -134,17 +134,19 @@ class Contents:
         free = (self.seeded.volume / self.seeded.J)[ids]
         need(np.allclose(volume[~gone], free[~gone], rtol=1e-4), "its particles are not as large as the scene's")
         if "strength" in self.fields:
-            wanted = self.scene.rock.heterogeneity.factors(self.seeded.x, self.seeded.volume)[ids]
+            wanted = strength_factors(self.scene, self.seeded)[ids]
             need(
                 np.allclose(self.fields["strength"][:, 0], wanted, rtol=1e-4),
                 "its particles are not as strong as the scene's",
             )
+        if "rock" in self.fields:
+            need(np.array_equal(self.fields["rock"][:, 0], self.seeded.rock[ids]), "its particles are of other rocks")
         need(((mode >= 0) & (mode <= 2)).all(), "particles have failed in no known way")
         intact = mode == 0
         need((J >= J_BOUNDS[0]).all() and (J[intact] <= J_BOUNDS[1]).all(), "rock is squeezed or stretched too far")
         need(np.linalg.norm(v, axis=1).max() * self.scene.dt <= MOST_CELLS * g.dx, "particles go too fast")
         self._check_cells(x + u, gone)
-        mass = self.scene.density * self.seeded.J_start * volume
+        mass = self.scene.time_scale**2 * densities(self.scene, self.seeded)[ids] * volume
         self._kinetic = float(0.5 * mass @ np.sum(v**2, axis=1))
 
     def _check_cells(self, x: np.ndarray, gone: np.ndarray) -> None:
@@ -174,7 +176,7 @@ class Contents:
         counts = np.bincount(mode, minlength=3)[:3]
         need(np.array_equal(self.arrays["event_by_mode"], counts), "it counts other events than it holds")
         if len(ids):
-            most = self.scene.rock.after_failure.max_events
+            most = most_events(self.scene)
             need(np.bincount(ids).max() <= most, f"a particle has more than {most} events")
             failed = np.zeros(self.count, dtype=bool)
             failed[self.fields["id"][:, 0]] = self.fields["mode"][:, 0] != 0
@@ -216,7 +218,7 @@ class Contents:
             need(math.isclose(kinetic, self._kinetic, rel_tol=error, abs_tol=1e-20), "particles go at other speeds")
 
     def _check_dropped(self) -> None:
-        total = self.scene.rock.density * self.seeded.J_start * float(self.seeded.volume.sum())
+        total = float(densities(self.scene, self.seeded) @ self.seeded.volume)
         need(0.0 <= float(self.arrays["dropped_mass"]) <= 1.01 * total, "more has been dropped than there was")
         need(int(self.arrays["dropped_count"]) or not float(self.arrays["dropped_mass"]), "nothing was dropped")
 

@@ -5,7 +5,7 @@ import numpy as np
 from rsmpm_ti.fields.contacts import pushing_planes
 from rsmpm_ti.fields.geometry import Geometry
 from rsmpm_ti.fields.particles import stored
-from rsmpm_ti.fields.records import event_capacity
+from rsmpm_ti.fields.records import event_capacity, has_normals
 from rsmpm_ti.records.history_table import HISTORY_COLUMNS
 from rsmpm_ti.run.kept.reading import Header, need
 from rsmpm_ti.run.settings import Settings
@@ -41,8 +41,7 @@ def layout(scene: Scene, count: int, settings: Settings) -> dict[str, tuple[np.d
     add(f64, (SLOTS,), "ledger_body_work", "ledger_viscous", "ledger_released", "ledger_damped", "ledger_mixed")
     add(f64, (EVENTS,), "event_time")
     add(real, (EVENTS,), "event_sigma_1", "event_sigma_3", "event_released")
-    oriented = scene.rock.criterion.breaks and scene.rock.after_failure.oriented
-    add(real, (EVENTS, dim), "event_x", *["event_normal"] * oriented)
+    add(real, (EVENTS, dim), "event_x", *["event_normal"] * has_normals(scene))
     add(i32, (EVENTS,), "event_mode", "event_id")
     add(i32, (3,), "event_by_mode")
     add(f64, (), "event_onset", "end", "clock_dt", "clock_since", "clock_pace", "clock_loaded")
@@ -79,6 +78,6 @@ def check_layout(headers: dict[str, Header], scene: Scene, count: int, settings:
         for n, length in zip(there.shape, shape, strict=True):
             agreed = lengths.setdefault(length, n) if isinstance(length, str) else length
             need(n == agreed, f"array {name} has shape {there.shape}")
-    most = event_capacity(scene, count) if scene.rock.criterion.breaks else 0
+    most = event_capacity(scene, count) if scene.breaks else 0
     need(lengths[EVENTS] <= most, f"it has {lengths[EVENTS]} events, and {count} particles have at most {most}")
     need(lengths[SLOTS] >= 1, "its ledger is empty")

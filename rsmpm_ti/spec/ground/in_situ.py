@@ -69,11 +69,12 @@ def weight_along(scene, axis: int) -> float:
     return 0.0 if force is None else scene.rock.density * force[axis]
 
 
-def start_stress(scene, x: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """sigma_xx, sigma_yy, sigma_zz [Pa], [n, 3], and J, [n], of particles at x [m], [n, dim]."""
+def start_stress(scene, x: np.ndarray, bulk: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """sigma_xx, sigma_yy, sigma_zz [Pa], [n, 3], and J, [n], of particles at x [m], [n, dim]; bulk: modulus of the
+    rock of each [Pa], [n]."""
     stress = scene.loading.initial_stress
     p = stress.pressure(x[:, stress.axis], weight_along(scene, stress.axis))
-    return stress.normal_stresses(p), 1.0 - stress.mean(p) / scene.rock.elasticity.bulk
+    return stress.normal_stresses(p), 1.0 - stress.mean(p) / bulk
 
 
 def check_initial_stress(scene) -> None:
@@ -86,7 +87,7 @@ def check_initial_stress(scene) -> None:
     if loading.confinement > 0.0:
         remedy = "an equal pressure from all sides is overburden with K0 = 1"
         raise refuse("loading.confinement", loading.confinement, "0 where there is an initial_stress", remedy)
-    if scene.rock.elasticity.plane_stress:
+    if scene.rock.elasticity.plane_stress:  # then all rocks are
         remedy = "the ground presses on the faces of a plate too; use plane strain"
         raise refuse("loading.initial_stress", stress, "none in plane stress", remedy)
     weight = weight_along(scene, stress.axis)
@@ -97,17 +98,19 @@ def check_initial_stress(scene) -> None:
     if ends.min() < -1e-9 * max(1.0, np.abs(ends).max()):
         allowed = f"such that the ground presses everywhere; at an end of a body it is {ends.min():.4g} Pa"
         raise refuse("initial_stress.surface", stress.surface, allowed, "put the surface above the bodies")
-    most = MAX_FRACTION * scene.rock.elasticity.bulk
+    most = MAX_FRACTION * min(rock.elasticity.bulk for rock in scene.rocks)
     if stress.mean(ends.max()) > most:
         allowed = f"such that the mean pressure, {stress.mean(ends.max()):.4g} Pa, is at most {most:.4g} Pa, "
         raise refuse("loading.initial_stress", stress, f"{allowed}{MAX_FRACTION:g} of the bulk modulus")
-    _check_strength(scene, stress, ends)
+    for k, body in enumerate(scene.bodies):
+        _check_strength(scene.rock_of(body).criterion, stress, ends[k])
 
 
-def _check_strength(scene, stress: InSitu, ends: np.ndarray) -> None:
-    """Rock that is there has not failed. Criteria of a scene's own may not say their strength."""
-    strength = getattr(scene.rock.criterion, "strength", None)
-    if not scene.rock.criterion.breaks or strength is None:
+def _check_strength(criterion, stress: InSitu, ends: np.ndarray) -> None:
+    """Rock that is there has not failed. Criteria of a scene's own may not say their strength. ends: pressure at both
+    ends of a body [Pa]."""
+    strength = getattr(criterion, "strength", None)
+    if not criterion.breaks or strength is None:
         return
     for p in (float(ends.min()), float(ends.max())):
         least, largest = sorted((max(p, 0.0), stress.K0 * max(p, 0.0)))

@@ -11,6 +11,7 @@ import numpy as np
 
 from rsmpm_ti.errors import refuse
 from rsmpm_ti.rock.tensors import PACKED_LENGTH
+from rsmpm_ti.spec.bodies.rocks import variables_of
 from rsmpm_ti.spec.review.machine import address_space, free_memory
 from rsmpm_ti.spec.review.placement import measure
 
@@ -84,36 +85,43 @@ def _refuse(scene, count: float, needed: float, free: float, whose: str) -> None
 
 def memory(scene, count: float) -> tuple[float, float]:
     """Largest resident memory of the process that solves and of the one that paints [bytes]; count: particles."""
-    rock = scene.rock
-    acts = rock.criterion.breaks and rock.nonlocal_mean.acts
+    acts = any(averaging(scene))
     held = 8.0 * count
     fields = memory_of_particles(scene, count) + memory_of_nodes(scene, count)
     solver = 1e6 * (SOLVER_MB[scene.dim] + NONLOCAL_MB * acts) + fields + COPIES[scene.dim] * held
     return solver, 1e6 * PAINTER_MB + PAINTED[scene.dim] * held
 
 
+def averaging(scene) -> list[bool]:
+    """Of each rock, whether something is averaged over a length of it."""
+    return [rock.criterion.breaks and rock.nonlocal_mean.acts for rock in scene.rocks]
+
+
 def memory_of_particles(scene, count: float) -> float:
     """Bytes of the fields of so many particles and of their failure events, in double precision."""
-    rock, dim = scene.rock, scene.dim
+    rocks, dim = scene.rocks, scene.dim
     packed = PACKED_LENGTH[dim]
     # reference, u, v; sigma; L; J, volume and room for sorting
     reals = 3 * dim + packed + dim * dim + 3
-    reals += dim * dim * scene.transfer.affine + rock.viscosity.acts + rock.heterogeneity.varies
-    whole = 4  # id, key, base, order
+    reals += dim * dim * scene.transfer.affine
+    reals += any(rock.viscosity.acts for rock in rocks) + any(rock.heterogeneity.varies for rock in rocks)
+    whole = 4 + (len(rocks) > 1)  # id, key, base, order; rock
     event = 0
-    if rock.criterion.breaks:
-        law, nonlocal_fields = rock.after_failure, 5 + dim
-        whole += 1 + sum(v.whole for v in law.history)
-        reals += sum(dim if v.per_axis else 1 for v in law.history if not v.whole)
-        reals += nonlocal_fields * rock.nonlocal_mean.acts
-        event = law.max_events * (8 * (4 + dim + dim * law.oriented) + 4 * 2)
+    if scene.breaks:
+        laws, nonlocal_fields = [rock.after_failure for rock in rocks if rock.criterion.breaks], 5 + dim
+        history = variables_of(scene)
+        whole += 1 + sum(v.whole for v in history)
+        reals += sum(dim if v.per_axis else 1 for v in history if not v.whole)
+        reals += nonlocal_fields * any(averaging(scene))
+        oriented = any(law.oriented for law in laws)
+        event = max(law.max_events for law in laws) * (8 * (4 + dim + dim * oriented) + 4 * 2)
     return count * (8 * reals + 4 * whole + event)
 
 
 def memory_of_nodes(scene, count: float) -> float:
     """Bytes of the fields of all nodes, of the sparse grid where it has material, in double precision."""
     reals, nodes = 1 + scene.dim * (4 if scene.order == "musl" else 2), math.prod(scene.domain.node_counts)
-    means = 2 * 7 + 1.5 if scene.rock.criterion.breaks and scene.rock.nonlocal_mean.acts else 0.0
+    means = (2 * 7 + 1.5) * sum(averaging(scene))
     if not use_sparse_grid(scene, count):
         return 8.0 * (reals + means) * nodes
     edge = BLOCK * scene.domain.dx

@@ -10,6 +10,7 @@ from dataclasses import dataclass, replace
 
 from rsmpm_ti.checks import KNOWN, is_pressure, pressure_said, too_small
 from rsmpm_ti.errors import SceneError
+from rsmpm_ti.spec.bodies.rocks import named_rocks
 from rsmpm_ti.spec.mass_scaling import estimate
 from rsmpm_ti.spec.regions import Slit, removals_of
 
@@ -78,20 +79,22 @@ WHOLE_ANGLE, NEAR = 5.0, 0.15
 
 def implausible(scene) -> list[str]:
     """All of it."""
-    rock = [said for path, value, known in _known(scene.rock) if (said := _outside(path, value, known))]
-    units = [*_pressures_said(scene, "rock", "loading", "output"), *_angles_said(scene)]
-    return [*rock, *_ratios_said(scene.rock), *units, *_loading_said(scene), *_overburden_said(scene)]
+    rock = [said for path, value, known in _known(scene) if (said := _outside(path, value, known))]
+    ratios = [said for name, one in named_rocks(scene) for said in _ratios_said(name, one)]
+    units = [*_pressures_said(scene, "loading", "output"), *_angles_said(scene)]
+    return [*rock, *ratios, *units, *_loading_said(scene), *_overburden_said(scene)]
 
 
-def _known(rock) -> list[tuple[str, float, Range]]:
-    """(dotted path, value, range) of every number of a rock that has a range; 0 is a choice."""
-    numbers = _numbers("rock", rock)
+def _known(scene) -> list[tuple[str, float, Range]]:
+    """(dotted path, value, range) of every number of its rocks that has a range; 0 is a choice."""
+    numbers = (number for name, rock in named_rocks(scene) for number in _numbers(name, rock))
     return [(path, value, RANGES[name]) for path, _, name, value in numbers if name in RANGES and value != 0.0]
 
 
 def _pressures_said(scene, *parts: str) -> list[str]:
-    """Pressures of parts of a scene that have no range and look like megapascals."""
-    numbers = (number for part in parts for number in _numbers(part, getattr(scene, part)))
+    """Pressures of its rocks, and of other parts of a scene, that have no range and look like megapascals."""
+    things = [*named_rocks(scene), *((part, getattr(scene, part)) for part in parts)]
+    numbers = (number for name, thing in things for number in _numbers(name, thing))
     small = [
         (path, value)
         for path, owner, name, value in numbers
@@ -115,8 +118,8 @@ def _angles_said(scene) -> list[str]:
 
 def blamed(error: SceneError, scene) -> SceneError:
     """A refusal, with what looks like another unit as its likely cause."""
-    causes = [said for path, value, known in _known(scene.rock) if (said := _mistaken(path, value, known))]
-    causes += [*_pressures_said(scene, "rock", "loading"), *_angles_said(scene)]
+    causes = [said for path, value, known in _known(scene) if (said := _mistaken(path, value, known))]
+    causes += [*_pressures_said(scene, "loading"), *_angles_said(scene)]
     new = [said for said in causes if said not in str(error)]
     return SceneError(f"{error}; likely cause: {'; '.join(new)}") if new else error
 
@@ -166,22 +169,23 @@ def _outside(path: str, value: float, rock: Range) -> str:
     return _mistaken(path, value, rock) or f"{path} = {_si(value, rock)} is not rock's, {rock.text()} ({rock.source})"
 
 
-def _ratios_said(rock) -> list[str]:
-    """Strengths and moduli against each other. Laws of a scene's own may lack some."""
+def _ratios_said(name: str, rock) -> list[str]:
+    """Strengths and moduli against each other. Laws of a scene's own may lack some. name: of the rock in messages."""
     ucs, tensile = (getattr(rock.criterion, name, None) for name in ("ucs", "tensile_strength"))
     young = getattr(rock.elasticity, "E", None)
     said = []
     if ucs and not UCS_RANGE[0] <= ucs <= UCS_RANGE[1]:
         allowed = f"{UCS_RANGE[0] / 1e6:g} to {UCS_RANGE[1] / 1e6:g} MPa"
-        said.append(f"rock.criterion: a uniaxial strength of {ucs / 1e6:.4g} MPa is not rock's, {allowed} ({STRENGTH})")
+        strength = f"a uniaxial strength of {ucs / 1e6:.4g} MPa"
+        said.append(f"{name}.criterion: {strength} is not rock's, {allowed} ({STRENGTH})")
     if ucs and tensile and not BRITTLENESS[0] <= ucs / tensile <= BRITTLENESS[1]:
         said.append(
-            f"rock.criterion: its compressive over its tensile strength is {ucs / tensile:.3g}; rock's is "
+            f"{name}.criterion: its compressive over its tensile strength is {ucs / tensile:.3g}; rock's is "
             f"{BRITTLENESS[0]:g} to {BRITTLENESS[1]:g} (Cai 2010)"
         )
     if ucs and young and not MODULUS_RATIO[0] <= young / ucs <= MODULUS_RATIO[1]:
         said.append(
-            f"rock: E over its uniaxial strength is {young / ucs:.3g}; rock's is {MODULUS_RATIO[0]:g} to "
+            f"{name}: E over its uniaxial strength is {young / ucs:.3g}; rock's is {MODULUS_RATIO[0]:g} to "
             f"{MODULUS_RATIO[1]:g} (Deere & Miller 1966)"
         )
     return said

@@ -1,0 +1,1 @@
+"""What fills bodies: particles, and rocks."""
