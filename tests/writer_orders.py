@@ -17,6 +17,6 @@ NO_ROWS = np.zeros(0, dtype=[(name, float) for name in HISTORY_COLUMNS])
 def started(out) -> Writer:
     scene = replace(load_scene("cube", quick=True), output=Output(frames=1, movie=False))
     folder = prepare(scene, out, "cube")
-    writer = Writer(commission(scene, "cube", out, 5e-3), folder)
+    writer = Writer(commission(scene, "cube", out, scene.particles()), folder)
     folder.begin()
     return writer

@@ -62,6 +62,20 @@ def summarise(scene: Scene, history: np.ndarray, events: EventTable, energy_star
     return out
 
 
+def failures_by_rock(names: list[str], rock: np.ndarray, events: EventTable) -> list[dict]:
+    """`by_rock` of summary.json. names: of the rocks; rock: which of them each particle is of, by its id, [n]."""
+    of_event = rock[events.id]
+    return [
+        {
+            "rock": name,
+            "particles": int(np.count_nonzero(rock == k)),
+            "failed_tension": int(np.count_nonzero(events.mode[of_event == k] == TENSION)),
+            "failed_shear": int(np.count_nonzero(events.mode[of_event == k] != TENSION)),
+        }
+        for k, name in enumerate(names)
+    ]
+
+
 def _load_at(time: float, rows, middle, stress, strain) -> tuple[float | None, float | None]:
     """Stress and strain at a time, extrapolated from the last rows before it: the row that holds it has lost stress."""
     k = np.flatnonzero(rows < time)[-4:]

@@ -6,6 +6,7 @@ import numpy as np
 import taichi as ti
 
 from rsmpm_ti.records.snapshot import Snapshot
+from rsmpm_ti.rock.rock import Rock
 from rsmpm_ti.rock.viscosity import NoViscosity
 from rsmpm_ti.solver.advance import Drive
 from rsmpm_ti.solver.readout import take_snapshot
@@ -31,16 +32,26 @@ class Static:
     strain: float
 
 
+def without_viscosity(scene: Scene) -> Scene:
+    """The same scene, none of whose rocks has artificial viscosity."""
+
+    def plain(rock: Rock) -> Rock:
+        return replace(rock, viscosity=NoViscosity())
+
+    bodies = tuple(body if body.rock is None else replace(body, rock=plain(body.rock)) for body in scene.bodies)
+    return replace(scene, rock=plain(scene.rock), bodies=bodies)
+
+
 def static_state(scene: Scene, *, press: float = 8.0, hold: float = 4.0, cfl: float = 1.0) -> Static:
     """Press the platens together during `press` wave transits, hold for `hold` more, and average over the hold.
 
     Failure, viscosity and mass scaling are switched off: they have no part in an elastic static state.
     """
-    rock = replace(scene.elastic().rock, viscosity=NoViscosity())
-    transit = scene.loading.height / rock.wave_speed()
+    scene = without_viscosity(scene.elastic())
+    transit = scene.loading.height / scene.rock.wave_speed()
     loading = replace(scene.loading, start=Press(time=press * transit), time_scale=1.0)
     schedule = Schedule(t_end=(press + hold) * transit, cfl=cfl)
-    drive = set_up(replace(scene, rock=rock, loading=loading, schedule=schedule))
+    drive = set_up(replace(scene, loading=loading, schedule=schedule))
     clock = drive.clock
     drive.advance(round(press * transit / clock.dt))
     impulse, start, sigma = drive.survey.impulse, clock.time, np.zeros(())

@@ -1,8 +1,8 @@
 """Mean stress, crack strain and slip over a length of the rock: spread to nodes, blurred along each axis, read back.
 
 2D. A look for cracks needs them only near what is cracked or has tension of its own beyond the strength, since a mean
-is no larger than the largest that it is taken over; the grid is averaged there, tile by tile, with the same sums. Where a
-scene has several rocks, `sim` is the view of one: it has sums of its own, of its own particles.
+is no larger than the largest that it is taken over; the grid is averaged there, tile by tile, with the same sums. In a
+scene of several rocks `sim` is the view of one, which has sums of its own, of its own particles.
 """
 
 import taichi as ti

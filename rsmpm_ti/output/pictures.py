@@ -6,9 +6,16 @@ from pathlib import Path
 
 import numpy as np
 
+from rsmpm_ti.analysis.fracture import spacing_of
+from rsmpm_ti.analysis.neighbours import pairs_within
 from rsmpm_ti.fields.side_motion import held_sides
 from rsmpm_ti.rock.criteria import MohrCoulomb
+from rsmpm_ti.spec.bodies.rocks import rock_indices
 from rsmpm_ti.spec.scene import Scene
+from rsmpm_ti.spec.seeding import Seeds
+
+BESIDE = 1.3
+"""Spacings of particles up to which two lie beside each other: less than across the diagonal of a lattice."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -26,19 +33,30 @@ class Commission:
     out: Path
 
 
-def commission(scene: Scene, name: str, out: Path, volume: float) -> Commission:
-    """volume: of all particles [m^dim], from which the end of the load axis is estimated."""
+def commission(scene: Scene, name: str, out: Path, seeds: list[Seeds]) -> Commission:
+    """seeds: `scene.particles()`."""
+    volume = float(sum(body.volume.sum() for body in seeds))
     low, high = zip(*(body.region.bounds() for body in scene.bodies), strict=True)
     lower, upper = np.min(low, axis=0)[:2], np.max(high, axis=0)[:2]
     strain, load = load_limits(scene, volume)
     painters = {
         "lower": tuple(lower), "upper": tuple(upper), "stress_limit": stress_limit(scene, load),
         "strain_limit": strain, "load_limit": load, "backend": scene.output.painter, "softens": softens(scene),
-        "load_name": load_name(scene),
+        "load_name": load_name(scene), "interface": interface(scene, seeds),
     }  # fmt: skip
     return Commission(
         kinds=kinds_of(scene), painters=painters, title=scene.title, name=name, movie=scene.output.movie, out=Path(out)
     )
+
+
+def interface(scene: Scene, seeds: list[Seeds]) -> np.ndarray | None:
+    """Ids of particles beside each other of two rocks, [pairs, 2]; None where there is one rock."""
+    if len(scene.rocks) == 1:
+        return None
+    rock = np.repeat(rock_indices(scene), [len(body.x) for body in seeds])
+    x, spacing = np.concatenate([body.x for body in seeds]), spacing_of(scene)
+    a, b = pairs_within(x, BESIDE * spacing)
+    return np.stack([a, b], axis=1)[rock[a] != rock[b]]
 
 
 def kinds_of(scene: Scene) -> tuple[str, ...]:

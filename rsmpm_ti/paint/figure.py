@@ -14,15 +14,17 @@ from rsmpm_ti.paint.frame_axes import MEGA, MILLI, draw_chrome
 from rsmpm_ti.paint.frame_kinds import Look, crack_look, cracking_look, margin_look, stress_look
 from rsmpm_ti.paint.ggui import Ggui, probe
 from rsmpm_ti.paint.layout import TEXT_LINE, Box, lay_out
+from rsmpm_ti.paint.palette import View
 from rsmpm_ti.paint.raster import Raster
 from rsmpm_ti.paint.words import drawable
 from rsmpm_ti.records.history_table import nominal_stress
-from rsmpm_ti.records.snapshot import SHEAR, TENSION, Pattern, Snapshot
+from rsmpm_ti.records.snapshot import INTACT, SHEAR, TENSION, Pattern, Snapshot
 
 KINDS = ("stress", "cracks", "margin")
 PAINTERS = {"raster": Raster, "ggui": Ggui}
 TEXT_LINES = 8  # the most that `FramePainter._lines` writes
 SMOOTH = 3  # the inset's curve is drawn this many times larger and reduced
+INTERFACE = (0x70, 0x70, 0x68)  # colour of the line where two rocks meet
 MARGIN = 10  # pixels around the inset's box that its marker may stick out
 
 
@@ -34,7 +36,8 @@ class FramePainter:
     same for both signs (needed for "stress"); strain_limit [1] and load_limit [Pa]: ends of the inset's axes, both or
     there is no inset; softens: "cracks" tints rock that has begun to lose strength and not failed; backend: "raster" or
     "ggui"; size: even (width, height) in pixels, by default from the specimen's shape; convention: written on the
-    colour bar of "stress"; strain_name, load_name: axes of the inset.
+    colour bar of "stress"; strain_name, load_name: axes of the inset; interface: ids of particles beside each other of
+    two rocks, [pairs, 2], between which "cracks" shows a line.
 
     Allocates Taichi fields: make it after `ti.init`, and `close` it before the next.
     """
@@ -55,6 +58,7 @@ class FramePainter:
         convention: str = "tension positive",
         strain_name: str = "axial strain",
         load_name: str = "total axial stress",
+        interface: np.ndarray | None = None,
     ):
         if kind not in KINDS:
             raise refuse("kind", kind, f"one of {', '.join(KINDS)}")
@@ -72,6 +76,7 @@ class FramePainter:
 
         self.kind = kind
         self.backend = backend
+        self._interface = interface if kind == "cracks" else None
         words = [None if text is None else drawable(text) for text in (title, convention, strain_name, load_name)]
         look = self._look(stress_limit, softens, *words)
         self._palette, self.wording, self._value = look.palette, look.wording, look.value
@@ -96,7 +101,10 @@ class FramePainter:
         value = self._value(snapshot)
         if value is not None:
             value = value[shown]
-        return self._painter.image(snapshot.x[shown], half, snapshot.failure_mode[shown], value)
+        image = self._painter.image(snapshot.x[shown], half, snapshot.failure_mode[shown], value)
+        if self._interface is None:
+            return image
+        return draw_interface(image, self.layout.view, snapshot, shown, self._interface)
 
     @property
     def extent_mm(self) -> tuple[float, float, float, float]:
@@ -161,6 +169,26 @@ def slab(snapshot: Snapshot | Pattern) -> np.ndarray | slice:
     spacing = np.cbrt(np.nanmedian(snapshot.volume))
     # Lattice layers lie half a spacing off the middle, or on it; the margin keeps round-off from taking one side only.
     return abs(z - 0.5 * (np.nanmin(z) + np.nanmax(z))) <= 0.99 * spacing
+
+
+def draw_interface(panel: np.ndarray, view: View, snapshot: Snapshot | Pattern, shown, pairs: np.ndarray) -> np.ndarray:
+    """The panel with a thin line where two rocks meet: a piece between each pair of particles that are both whole.
+
+    pairs: their ids, [k, 2]; shown: which particles the panel shows.
+    """
+    candidates = np.zeros(len(snapshot.id), dtype=bool)
+    candidates[shown] = True
+    candidates &= (snapshot.failure_mode == INTACT) & np.isfinite(snapshot.x).all(axis=1)
+    place = np.minimum(np.searchsorted(snapshot.id, pairs), len(snapshot.id) - 1)
+    drawn = (snapshot.id[place] == pairs).all(axis=1) & candidates[place].all(axis=1)
+    scale = np.array([view.width, -view.height]) / (np.array(view.upper) - np.array(view.lower))
+    a, b = ((snapshot.x[k, :2] - (view.lower[0], view.upper[1])) * scale for k in place[drawn].T)
+    along = 0.5 * np.stack([a[:, 1] - b[:, 1], b[:, 0] - a[:, 0]], axis=1)
+    picture = Image.fromarray(panel)
+    draw = ImageDraw.Draw(picture)
+    for ends in np.concatenate([0.5 * (a + b) - along, 0.5 * (a + b) + along], axis=1).tolist():
+        draw.line(ends, fill=INTERFACE)
+    return np.array(picture)
 
 
 def load_curve(history: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

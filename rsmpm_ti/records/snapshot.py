@@ -108,6 +108,11 @@ PARTICLES = Table(
             "which know none",
             value=lambda s: s.aperture,
         ),
+        Column(
+            name="rock", unit="1", about="which rock of the scene: 0 the scene's own, then the others in the order of "
+            "bodies",
+            only="in scenes of several rocks", value=lambda s: s.rock, wanted=lambda s: s.rock is not None,
+        ),
     ),
 )  # fmt: skip
 

@@ -7,6 +7,10 @@ def _key(name: str, unit: str, about: str) -> Column:
     return Column(name=name, unit=unit, about=about)
 
 
+def _of_rocks(name: str, unit: str, about: str) -> Column:
+    return Column(name=name, unit=unit, about=about, only="in scenes of several rocks")
+
+
 FLAWED = "; empty or null but for 2D scenes of one flaw in which something failed"
 
 SUMMARY = Table(
@@ -45,6 +49,11 @@ SUMMARY = Table(
         _key("half_turn_mismatch_m", "m", "distance of one wing from the other turned by 180 degrees" + FLAWED),
         _key("failed_tension", "1", "failures in tension"),
         _key("failed_shear", "1", "failures in shear"),
+        _of_rocks("by_rock", "", "list: failures by rock, in the order of the scene's rocks, as follows"),
+        _of_rocks("by_rock[].rock", "", "`rock`, or `bodies[k].rock` of the first body of that rock"),
+        _of_rocks("by_rock[].particles", "1", "particles of it at the start"),
+        _of_rocks("by_rock[].failed_tension", "1", "their failures in tension"),
+        _of_rocks("by_rock[].failed_shear", "1", "their failures in shear"),
         _key("apparent_modulus_Pa", "Pa", "slope of the curve between 0.2 and 0.9 of the time to onset"),
         _key("platen_imbalance", "1", "up to onset: mean difference of both sides over their mean added stress"),
         _key("platen_imbalance_max", "1", "largest such ratio of rows with a tenth of the load or more"),

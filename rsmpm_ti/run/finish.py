@@ -10,7 +10,7 @@ from pathlib import Path
 import numpy as np
 
 from rsmpm_ti.analysis.fracture import Fracture, crack_lines, measure_fracture
-from rsmpm_ti.analysis.summary import summarise
+from rsmpm_ti.analysis.summary import failures_by_rock, summarise
 from rsmpm_ti.errors import ObserverError, SceneError
 from rsmpm_ti.output.files import write_checkpoint, write_events, write_rows
 from rsmpm_ti.output.folder import SUMMARY
@@ -22,6 +22,8 @@ from rsmpm_ti.results.result import Result
 from rsmpm_ti.run.attempts import Attempts
 from rsmpm_ti.run.damping import damped_energy, damping_said, mixing_energy, viscous_energy
 from rsmpm_ti.run.warnings import kinetic_share_after, warnings_of
+from rsmpm_ti.solver.readout import read_rocks
+from rsmpm_ti.spec.bodies.rocks import named_rocks
 
 
 def finish(run, stopped: str, failure: Exception | None) -> tuple[Result, SceneError | None]:
@@ -132,6 +134,9 @@ def numbers_of(run, view, fracture: Fracture | None, speed: float, stopped: str,
     it has not been measured yet, or could not be."""
     writer = run.writer
     what_broke = summarise(run.scene, view.history, view.events, run.history.energy_start)
+    if run.sim.several:
+        names = [name for name, _ in named_rocks(run.scene)]
+        what_broke["by_rock"] = failures_by_rock(names, read_rocks(run.sim), view.events)
     numbers = {
         "particles": run.sim.particles.count,
         "steps": run.clock.step,

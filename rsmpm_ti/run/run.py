@@ -124,8 +124,7 @@ class Run:
             from rsmpm_ti.output.pictures import commission
             from rsmpm_ti.output.writer import Writer
 
-            volume = float(sum(body.volume.sum() for body in seeds))
-            self.writer = Writer(commission(scene, settings.name, folder.path, volume), folder, self._in_a_hurry)
+            self.writer = Writer(commission(scene, settings.name, folder.path, seeds), folder, self._in_a_hurry)
         try:
             self._set_up(seeds, kept)
             if folder is not None:

@@ -126,6 +126,13 @@ def read_pattern(sim: Simulation, time: float) -> Pattern:
     )
 
 
+def read_rocks(sim: Simulation) -> np.ndarray:
+    """Index in `Scene.rocks` of the rock of every particle, by id, [n]; of a scene of several rocks."""
+    rock = np.empty(sim.particles.count, dtype=np.int32)
+    rock[sim.particles.id.to_numpy()] = sim.particles.rock.to_numpy()
+    return rock
+
+
 def take_snapshot(sim: Simulation, time: float) -> Snapshot:
     """Copy the particles out, in the order of their ids, without those that were dropped."""
     return read_out(sim, time).snapshot()

@@ -144,7 +144,7 @@ def test_gallery_writes_margin_frames_only_when_asked(tmp_path, margin):
     )
     x, _ = stripes(1)
     (tmp_path / "frames").mkdir()
-    gallery = Gallery(commission(scene, "cube", tmp_path, 5e-3))
+    gallery = Gallery(commission(scene, "cube", tmp_path, scene.particles()))
     for kind, image in gallery.paint(0, snapshot_of(x), NO_ROWS).items():
         gallery.write(kind, 0, image, 0.0)
     gallery.close(snapshot_of(x), NO_ROWS, [], np.zeros(0))

@@ -1,0 +1,1 @@
+"""Rocks beside each other: layers and inclusions."""
