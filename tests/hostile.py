@@ -88,7 +88,11 @@ def bases() -> list[Scene]:
     stress, weight = InSitu(axis=2, surface=0.02, K0=0.5), Gravity(b=(0.0, 0.0, -1.0), ramp=1e-4)
     ground = replace(solid, loading=Loading(initial_stress=stress, force_field=weight, body_force=(0.0, 0.0, -9.81)))
     steered = replace(lab, schedule=Schedule(t_end=1e-2), loading=replace(lab.loading, servo=Servo()))
-    return [plain, timed, lab, steered, solid, ground]
+    above = Body(
+        region=Box(lower=(0.0, 0.0, 0.01), upper=(0.01, 0.01, 0.012)), rock=replace(plain.rock, density=2700.0)
+    )
+    mixed = replace(solid, bodies=(block, above))
+    return [plain, timed, lab, steered, solid, ground, mixed]
 
 
 def at(thing, path: list):

@@ -2,14 +2,16 @@
 does not come from this code."""
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 import pytest
 
 from rsmpm_ti.records.snapshot import INTACT
 from rsmpm_ti.results.result import Result
+from rsmpm_ti.rock.elasticity import Hooke
 from rsmpm_ti.spec.library.places import available
+from rsmpm_ti.verify.interfaces.closed_forms import RoundInclusion
 
 STRENGTH, UCS = 2e6, 25.520e6  # in tension, and 2 c cos(phi)/(1 - sin(phi)) of 5.95 MPa and 40 degrees [Pa]
 MODULUS = 17e9 / (1.0 - 0.14**2)  # of plane strain [Pa]
@@ -87,6 +89,23 @@ def weakest(patches: float, modulus: float) -> tuple[float, float]:
     return (-math.log(0.99) / patches) ** (1.0 / modulus), (-math.log(0.01) / patches) ** (1.0 / modulus)
 
 
+def pole_tension(radius: float, contrast: float, length: float) -> float:
+    """Largest tension above a soft inclusion under a unit load, as the mean that the rock of the block takes over its
+    own part of the plate."""
+    rock = Hooke(E=17e9, nu=0.14)
+    field = RoundInclusion(inside=replace(rock, E=contrast * rock.E), around=rock, radius=radius)
+    steps = np.linspace(-4.0 * length, 4.0 * length, 81)
+    found = []
+    for y in np.linspace(radius, radius + 3.0 * length, 31):
+        x = np.stack(np.meshgrid(steps, y + steps), axis=-1).reshape(-1, 2)
+        x = x[np.hypot(*x.T) > radius]
+        weight = np.exp(-0.5 * (x[:, 0] ** 2 + (x[:, 1] - y) ** 2) / length**2)
+        found.append(-weight @ field.stress_around(x)[:, 0, 0] / weight.sum())
+    return max(found)
+
+
+POLE = STRENGTH / pole_tension(10e-3, 0.1, 2.5e-3)
+
 NUMBERS = {
     "cube": Number(
         name="first_failure_stress_Pa", pinned=2.093e6, rel=0.02,
@@ -141,6 +160,11 @@ NUMBERS = {
     "tunnel": Number(
         name="onset_stress_Pa", pinned=9.89e6, rel=0.02, bounds=(0.92 * TUNNEL, 1.08 * TUNNEL),
         source="Kirsch (1898); a block of ten radii is 4 % off an infinite plate, (R/half)^2, as is a wall of cells",
+    ),
+    "inclusion": Number(
+        name="onset_stress_Pa", pinned=6.363e6, rel=0.03, bounds=(POLE / 1.35, POLE),
+        source="Goodier: mean tension at the poles of an inclusion in an infinite plate; in a strip three times as wide"
+        " that of a hole is 1.3 times as large (Howland 1930, Phil. Trans. R. Soc. A 229:49)",
     ),
     "slope": Number(
         name="first_failure_stress_Pa", pinned=0.674e6, rel=0.03, bounds=(STANDS * SLOPE, SLIDES * SLOPE),

@@ -8,12 +8,12 @@ from rsmpm_ti.rock.elasticity import Hooke
 
 
 def across_layers(rocks: tuple[Hooke, ...], fractions: tuple[float, ...]) -> float:
-    """Stress over strain across layers whose sides are held [Pa]: Backus (1962), J. Geophys. Res. 67:4427, eq. 13, C."""
+    """Stress over strain across layers, sides held [Pa]: C of Backus (1962), J. Geophys. Res. 67:4427, eq. 13."""
     return 1.0 / sum(f / (rock.lam + 2.0 * rock.mu) for rock, f in zip(rocks, fractions, strict=True))
 
 
 def along_layers(rocks: tuple[Hooke, ...], fractions: tuple[float, ...]) -> float:
-    """Stress over strain along layers whose sides are held [Pa]: Backus (1962), eq. 13, A."""
+    """The same along layers [Pa]: A of Backus (1962), eq. 13."""
     pairs = [(f, rock.lam, rock.lam + 2.0 * rock.mu, rock.mu) for rock, f in zip(rocks, fractions, strict=True)]
     plates = sum(f * 4.0 * mu * (lam + mu) / wave for f, lam, wave, mu in pairs)
     return plates + across_layers(rocks, fractions) * sum(f * lam / wave for f, lam, wave, _ in pairs) ** 2
