@@ -39,6 +39,7 @@ from .run.run import simulate as simulate
 from .setups.bending import bending_test as bending_test
 from .setups.brazilian import brazilian_test as brazilian_test
 from .setups.direct_shear import shear_test as shear_test
+from .setups.section import mask_bodies as mask_bodies
 from .setups.semicircular import semicircular_test as semicircular_test
 from .setups.uniaxial import uniaxial_test as uniaxial_test
 from .solver.observer import Observer as Observer

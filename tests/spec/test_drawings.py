@@ -22,8 +22,11 @@ from rsmpm_ti import (
     Polygon,
     Turned,
     Union,
+    lab_rock,
+    mask_bodies,
     mm,
 )
+from rsmpm_ti.errors import SceneError
 from rsmpm_ti.spec.drawings import mask as mask_module
 from rsmpm_ti.spec.drawings import mesh_file
 from rsmpm_ti.spec.review.placement import area_errors, measure
@@ -125,6 +128,17 @@ def test_greys_of_an_image_take_its_rocks_apart():
     assert rock.area + vein.area == pytest.approx(Mask(image=SECTION, mm_per_pixel=1.0, greys=(0, 120)).area)
     bodies = scene(rock, vein).particles()  # side by side, none in the other
     assert sum(body.volume.sum() for body in bodies) == pytest.approx(rock.area + vein.area)
+
+
+def test_each_grey_may_be_a_body_of_its_own_rock():
+    vein = lab_rock(G_f_I=2.0)
+    bodies = mask_bodies(image=SECTION, mm_per_pixel=1.0, rocks={60: None, (110, 130): vein})
+    assert [body.rock for body in bodies] == [None, vein]
+    assert bodies[1].region == Mask(image=SECTION, mm_per_pixel=1.0, greys=(110, 130))
+    for rocks in ({}, [60], {7: vein}, {"dark": vein}, {60: 3.0}):
+        with pytest.raises(SceneError) as error:
+            mask_bodies(image=SECTION, mm_per_pixel=1.0, rocks=rocks)
+        assert "\n" not in str(error.value)
 
 
 @pytest.mark.parametrize("mode", ["L", "RGB", "RGBA", "P", "LA", "CMYK", "1", "I;16", "F"])
