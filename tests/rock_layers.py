@@ -15,7 +15,7 @@ DX, WIDTH = 1e-3, 12e-3
 LAB = lab_rock(length=2e-3)
 SEAM = Rock(
     density=1900.0,
-    elasticity=Hooke(E=8e9, nu=0.2),
+    elasticity=Hooke(E=6e9, nu=0.2),
     criterion=MohrCoulomb(cohesion=0.6e6, friction_angle=35.0, tensile_strength=0.3e6),
 )
 HARD = Rock(density=2900.0, elasticity=Hooke(E=40e9, nu=0.25), criterion=Unbreakable(), viscosity=NoViscosity())

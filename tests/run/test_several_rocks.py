@@ -39,12 +39,11 @@ def test_the_seam_breaks_and_it_alone(folder):
     assert np.isnan(data["aperture_m"][data["rock"] == 1]).all() and (data["aperture_m"][data["rock"] == 0] == 0).all()
 
 
-def test_energy_closes_and_platens_agree(folder):
+def test_energy_closes(folder):
     summary = summary_of(folder)
     assert summary["energy_balance_error_elastic"] < 1e-3
     # first order in the step where rock collapses into a fluid at once: 1.1 % with the seam's rock alone
     assert summary["energy_balance_error"] < 0.02
-    assert summary["platen_imbalance"] < 0.01
 
 
 def test_failures_are_counted_by_rock(folder):

@@ -126,6 +126,7 @@ def test_scene_recorded_before_the_move_still_loads(tmp_path):
     path.write_text(json.dumps(manifest))
     recorded["loading"] |= {"cell": to_plain(LoadCell()), "initial_stress": None, "settle": False}
     recorded["loading"] |= {"servo": None, "local_damping": None}
+    recorded["bodies"][0]["rock"] = None
     for platen in recorded["loading"]["boundaries"]:
         platen |= {"pulls": False, "force": None, "stress": None}
     recorded["schedule"]["stop_after_drop"] = None
