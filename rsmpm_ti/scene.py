@@ -45,7 +45,9 @@ def parser() -> argparse.ArgumentParser:
     p.add_argument("--out", metavar="DIR", help="output folder (default renders/<scene>)")
     p.add_argument("--set", dest="settings", action="append", default=[], metavar="NAME=VALUE",
                    help="a keyword of the scene (flaw_length=15mm) or a field of it (schedule.cfl=0.3)")  # fmt: skip
-    p.add_argument("--rock", metavar="FILE|NAME", help="another rock: a data sheet (.toml), or a name of --rocks")
+    p.add_argument(
+        "--rock", metavar="FILE|NAME", help="another rock for the scene: a sheet (.toml), or a name of --rocks"
+    )
     p.add_argument("--quick", action="store_true", help="coarse grid and wider slit")
     p.add_argument("--elastic", action="store_true", help="switch failure off")
     p.add_argument(

@@ -53,9 +53,9 @@ def check_law(law) -> None:
 class AfterFailure:
     """The questions, with the answers of a law that remembers nothing.
 
-    `sim` is a `fields.state.Simulation` and p a particle with mode 1 (tension) or 2 (shear); before `begin` it is 0.
-    Energies are per stress-free volume [J/m^3]. A particle's Cauchy stress in `sim.particles.sigma[p]` is packed as in
-    tensors.py, tension positive [Pa].
+    `sim` is a `fields.state.Simulation`, in a scene of several rocks its view of the particle's own rock, and p a
+    particle with mode 1 (tension) or 2 (shear); before `begin` it is 0. Energies are per stress-free volume [J/m^3]. A
+    particle's Cauchy stress in `sim.particles.sigma[p]` is packed as in tensors.py, tension positive [Pa].
     """
 
     history = ()  # of `Variable`; without an annotation, since it is no field

@@ -6,6 +6,7 @@ import pytest
 import taichi as ti
 from small_scene import make, refusal
 
+from rsmpm_ti.errors import RockWarning
 from rsmpm_ti.rock.after_failure import AfterFailure, CompressionOnly, Variable
 from rsmpm_ti.rock.criteria import MohrCoulomb, Unbreakable
 from rsmpm_ti.rock.elasticity import Hooke
@@ -63,7 +64,8 @@ def test_elastic_is_without_failure_in_every_rock():
 
 
 def test_another_rock_takes_the_place_of_the_scenes_alone():
-    changed = with_rock(scene(), lab_rock())
+    with pytest.warns(RockWarning, match=r"^bodies\[1\].rock: kept"):
+        changed = with_rock(scene(), lab_rock())
     assert changed.rocks == (lab_rock(), HARD)
 
 

@@ -20,11 +20,12 @@ LONGER = {
     "lab_platens",
     "slit_field",
     "cracked_disc",
+    "inclusion",
 }
 """Cases of the quick tier that the suite leaves to its own longer tier: 10 to 60 s each, and something else is like
 them. `manufactured_a` like `_b`, the hard case `uniform_failure` like `uniaxial`, `triaxial` like the jacket,
 tests/solver/test_platens.py like platens, tests/solver/test_servo.py like `lab_residual`, `kirsch` and `first_failure`
-like the stress about a flaw."""
+like the stress about a flaw; tests/scenes hold the scene `inclusion` to the same closed form."""
 
 QUICK = [
     pytest.param(name, marks=[pytest.mark.validation] * (name in LONGER)) for name, case in CASES.items() if case.quick

@@ -11,6 +11,7 @@ from rsmpm_ti.rock.rock import Rock
 from rsmpm_ti.rock.sheet.data_sheet import DataSheet
 from rsmpm_ti.rock.sheet.reading import displayed, read_sheet
 from rsmpm_ti.rock.smeared_crack import Directional
+from rsmpm_ti.spec.bodies.rocks import named_rocks
 from rsmpm_ti.spec.library.places import HERE, shipped
 from rsmpm_ti.spec.scene import Scene
 
@@ -73,12 +74,16 @@ def for_scene(sheet: DataSheet, scene: Scene) -> DataSheet:
 
 
 def with_rock(scene: Scene, rock: Rock | DataSheet) -> Scene:
-    """A scene with another rock.
+    """A scene with another rock in place of its own; bodies with a rock of theirs keep it, which a RockWarning says.
 
     A `Rock` is taken as it is. A sheet leaves what it says nothing of as it was, which is the test's: the rule by which
     rock breaks, plane stress, viscosity, heterogeneity. It names itself in the title, and colours follow its tensile
     strength. Raises SceneError where this scene cannot break such rock.
     """
+    kept = [name for name, _ in named_rocks(scene)[1:]]
+    if kept:
+        said = f"{', '.join(kept)}: kept; another rock takes the place of the scene's alone"
+        warnings.warn(said, RockWarning, stacklevel=2)
     if isinstance(rock, Rock):
         return replace(scene, rock=rock)
     old, sheet = scene.rock, for_scene(rock, scene)
