@@ -213,7 +213,7 @@ def test_overload_is_over_the_strength_of_the_particle_itself():
 def test_looks_are_a_quarter_of_the_waves_time_over_the_length_apart(dx, cfl, interval):
     """Steps are cfl dx/c: the largest whole number of them in l/(4 c), l = 2 mm."""
     scene = block(dx=dx * 1e-3, cfl=cfl)
-    assert NonlocalSums(scene, Grid(scene), ti.f64).interval == interval
+    assert NonlocalSums(scene, scene.rock, Grid(scene), ti.f64).interval == interval
 
 
 def test_cracks_beyond_the_most_of_one_look_wait_for_the_next(monkeypatch):
