@@ -17,7 +17,7 @@ MODULUS = 17e9 / (1.0 - 0.14**2)  # of plane strain [Pa]
 BEAM = MODULUS * 24.0 / (16.0 * (1.0 + 2.4 * 1.14 / 16.0) + 24.0 * 1.431)
 """Nominal stress 3 P S/(2 b^2) over deflection/depth of a beam with S = 4 W and a crack of half its depth [Pa]."""
 
-HALF_DISC = 0.5 * 0.096 * MODULUS
+HALF_DISC = 0.5 * 0.098 * MODULUS
 """Load over the diameter, over deflection/radius [Pa]: `STIFFNESS` of `setups/semicircular.py`."""
 
 SLOPE = 2400.0 * 9.81 * (40.0 + (120.0 + 40.0 / math.tan(math.radians(70.0))) * 80.0 / 280.0)
