@@ -26,7 +26,7 @@ ARC = 10.0
 
 
 def tension_in_the_middle(arc: float) -> float:
-    """Tension there over 2 P/(pi D t), of a load spread over arcs of this half-angle [degrees]: Hondros (1959), Austral.
+    """Tension there over 2 P/(pi D t), of a load over arcs of this half-angle [degrees]: Hondros (1959), Austral.
     J. Appl. Sci. 10:243; docs/references.md."""
     angle = math.radians(arc)
     return math.sin(2.0 * angle) / angle - 1.0
