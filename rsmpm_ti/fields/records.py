@@ -56,7 +56,7 @@ class Ledger:
         self.viscous, self.released = ti.field(ti.f64, slots), ti.field(ti.f64, slots)
         # by local damping, and by PIC's part of the transfer
         self.damped, self.mixed = ti.field(ti.f64, slots), ti.field(ti.f64, slots)
-        # by boundaries, from what particles bring to the nodes that they hold; summed over nodes, so not by slot
+        # by boundaries, from what particles bring to nodes that they hold: the sum, and what the next step gives back
         self.stopped = ti.field(ti.f64, 2)
         self.begin(scene)
 
