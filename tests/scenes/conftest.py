@@ -22,6 +22,7 @@ COARSE = {
     "semicircular_bend": {"dx": 2e-3, "length": 4e-3, "deflection_end": 3e-5},
     "direct_shear": {"dx": 2e-3, "length": 4e-3},
     "tunnel": {"dx": 2e-3, "length": 4e-3, "time_scale": 30.0},
+    "impact": {"dx": 1e-3, "length": 2e-3},
     "slope": {"dx": 4.0, "length": 8.0, "t_end": 5.0},
 }  # fmt: skip
 """Keywords of a run of some 5 s that breaks rock, with cells as large as the scene's flaw and material length allow."""
