@@ -110,6 +110,8 @@ def _survey(sim: ti.template()):
         for d in ti.static(range(sim.dim)):
             sim.report.values[FIXED + sim.dim + b * sim.dim + d] = sim.ledger.impulse[b][d]
         sim.report.work[None] += sim.ledger.work[b] + 0.5 * sim.ledger.latest[b]
+    for k in sim.ledger.stopped:
+        sim.report.dissipated[None] += sim.ledger.stopped[k]
     for slot in sim.ledger.viscous:
         sim.report.work[None] += sim.ledger.body_work[slot]
         sim.report.dissipated[None] += sim.ledger.viscous[slot] + sim.ledger.released[slot]

@@ -23,6 +23,7 @@ COARSE = {
     "direct_shear": {"dx": 2e-3, "length": 4e-3},
     "tunnel": {"dx": 2e-3, "length": 4e-3, "time_scale": 30.0},
     "inclusion": {"dx": 1.25e-3, "length": 2.5e-3, "time_scale": 30.0, "strain_end": 7.5e-4},
+    "impact": {"dx": 1e-3, "length": 2e-3},
     "slope": {"dx": 4.0, "length": 8.0, "t_end": 5.0},
 }  # fmt: skip
 """Keywords of a run of some 5 s that breaks rock, with cells as large as the scene's flaw and material length allow."""
