@@ -40,7 +40,10 @@ def J_at_start(sim: ti.template(), p):
 @ti.func
 def _carried_stress(view: ti.template(), p):
     sigma = view.rock.viscosity.added_to(view, p, view.particles.sigma[p])
-    return view.particles.volume[p] * view.rock.after_failure.carrying_ratio(view, p) * sigma
+    ratio = view.particles.J[p]
+    if ti.static(view.rock.criterion.breaks):
+        ratio = view.rock.after_failure.carrying_ratio(view, p)
+    return view.particles.volume[p] * ratio * sigma
 
 
 @ti.func

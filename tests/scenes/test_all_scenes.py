@@ -183,26 +183,17 @@ ONE_SIDED = ("axial_strain", "lateral_strain", "volumetric_strain", "stress_top_
 UNKNOWN = {"impact": ONE_SIDED, "slope": ONE_SIDED}
 """Columns without a number: nothing presses from above, and sides lose their corners at once."""
 
-every_scene = pytest.mark.parametrize("name", NUMBERS)
+QUICKEST = ("cube", "intact", "intact_weibull", "slope", "direct_shear")
+"""Scenes that `make test` runs; the others take longer, and `make thorough` runs them."""
 
 
 def test_every_scene_that_ships_has_its_number():
     assert set(NUMBERS) == set(available())
 
 
-@every_scene
-@pytest.mark.thorough(
-    "confined",
-    "cube_lab",
-    "direct_shear",
-    "disc",
-    "disc_lab",
-    "notched_beam",
-    "semicircular_bend",
-    "tunnel",
-    "two_flaws",
-)
-def test_it_runs_to_its_end_and_breaks_rock_with_every_number_finite(coarse_run, name):
+@pytest.mark.parametrize("name", NUMBERS)
+@pytest.mark.thorough(*(name for name in NUMBERS if name not in QUICKEST))
+def test_it_runs_to_its_end_breaks_rock_and_its_numbers_are_finite_and_what_they_were(coarse_run, name):
     result = coarse_run(name)
     assert result.stopped == "" and result.summary["dropped"] == 0
     assert len(result.events) > 0 and (result.snapshot.failure_mode != INTACT).any()
@@ -224,11 +215,7 @@ def test_it_runs_to_its_end_and_breaks_rock_with_every_number_finite(coarse_run,
     # second order in the step, failure included: a tenth of a per cent, and a few times that in coarse cells
     assert result.summary["energy_balance_error"] < (0.005 if name == "impact" else 0.01)
 
-
-@every_scene
-@pytest.mark.thorough("confined", "disc_lab", "intact_weibull", "notched_beam", "semicircular_bend", "tunnel")
-def test_its_number_is_what_it_was_and_inside_what_is_known(coarse_run, name):
     number = NUMBERS[name]
-    found, (low, high) = number.of(coarse_run(name)), number.bounds
+    found, (low, high) = number.of(result), number.bounds
     assert low < found < high, number.source
     assert found == pytest.approx(number.pinned, rel=number.rel)
