@@ -9,6 +9,7 @@ import taichi as ti
 from rsmpm_ti.errors import SceneError
 from rsmpm_ti.fields.contacts import Contacts
 from rsmpm_ti.fields.grid import Grid
+from rsmpm_ti.fields.holes.walls import Walls
 from rsmpm_ti.fields.nodes import Nodes
 from rsmpm_ti.fields.nonlocal_sums import NonlocalSums
 from rsmpm_ti.fields.parallel import traversal
@@ -105,6 +106,7 @@ class Simulation:
         if self.is_nonlocal:
             self.nonlocal_sums = NonlocalSums(scene, self.grid, real)
         self.report = Report(scene)
+        self.walls = Walls(scene, self.grid, Seeds(x, volume))
         self._fill(scene, seeds, x, volume, stress, J)
 
     def _fill(self, scene: Scene, seeds: list[Seeds], x, volume, stress, J) -> None:

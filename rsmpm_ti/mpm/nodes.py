@@ -7,6 +7,7 @@ v_i <- v_i + dt (f_i / m_i + b)                       (momentum equation, paper 
 import taichi as ti
 
 from rsmpm_ti.fields.nodes import SMALL_MASS
+from rsmpm_ti.mpm.holes.press import book_walls
 from rsmpm_ti.mpm.contact import clear_gaps, keep_state, kept_state, squeeze, touching
 from rsmpm_ti.mpm.wall_nodes import extend, fold
 
@@ -200,6 +201,7 @@ def new_velocity(
     over_nodes(sim, update, dt, factor)
     extend(sim.nodes.v_columns, sim.grid.walls)
     extend(sim.nodes.f_columns, sim.grid.walls)
+    book_walls(sim, dt)
 
 
 @ti.kernel

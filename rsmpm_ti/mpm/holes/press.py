@@ -1,0 +1,54 @@
+"""Loads on the walls of holes: force to nodes, and their work. Without a hole nothing of it is compiled."""
+
+import taichi as ti
+
+from rsmpm_ti.fields.state import Simulation
+
+
+@ti.kernel
+def _press(sim: ti.template(), time: ti.f64):
+    """Add the force at a time [s] to the nodes."""
+    walls = sim.walls
+    for _ in range(1):
+        now = time
+        if ti.static(sim.grid.settles):
+            now *= sim.grid.pace[None]
+        for hole in ti.static(range(walls.holes)):
+            walls.load[hole] = walls.look_up(hole, now)
+    ti.loop_config(serialize=True)  # some hundred nodes
+    for k in range(walls.size):
+        i = walls.node[k]
+        frame = sim.grid.frame()
+        volume = ti.cast(1.0, ti.f64)
+        for d in ti.static(range(sim.dim)):
+            volume *= frame[d, 2] / sim.grid.dx
+        force = ti.Vector.zero(ti.f64, sim.dim)
+        if sim.nodes.mass[i] > 0.0:
+            for d in ti.static(range(sim.dim)):
+                force[d] = walls.load[walls.hole[k]] * walls.q[k][d] * volume * sim.grid.dx * frame[d, 1]
+            sim.nodes.f[i] += ti.cast(force, float)
+        walls.force[k] = force
+
+
+def press(sim: Simulation, time: float) -> None:
+    """Whatever presses in the holes of a scene, at a step's beginning [s], after the forces of the particles."""
+    if sim.walls.holes:
+        _press(sim, time)
+
+
+@ti.func
+def book_walls(sim: ti.template(), dt: ti.template()):
+    """Work of that force in a step whose nodes have their new velocity, and in f its change:
+
+        dW = dt f . (v - dv/2),
+
+    which is booked as `body_work` of mpm/g2p.py books that of a body force, for the reason given there.
+    """
+    if ti.static(sim.walls.holes > 0):
+        for _ in range(1):
+            work = ti.cast(0.0, ti.f64)
+            for k in range(sim.walls.size):
+                i = sim.walls.node[k]
+                middle = ti.cast(sim.nodes.v[i], ti.f64) - 0.5 * ti.cast(sim.nodes.f[i], ti.f64)
+                work += sim.walls.force[k].dot(middle)
+            sim.ledger.body_work[0] = sim.ledger.body_work[0] + ti.cast(dt, ti.f64) * work
