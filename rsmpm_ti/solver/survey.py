@@ -8,6 +8,7 @@ import taichi as ti
 from rsmpm_ti.fields.records import SCALARS
 from rsmpm_ti.fields.state import Simulation
 from rsmpm_ti.fields.stencil import coordinates
+from rsmpm_ti.mpm.holes.press import latest_internal_work
 
 FIXED = len(SCALARS) + 2
 """Places in the report before the momentum: the scalars and the two failure counts."""
@@ -95,6 +96,8 @@ def _survey(sim: ti.template()):
             report.elastic[None] += ti.cast(particles.volume[p] * stored, ti.f64)
             # the confining pressure's work: p times the volume that the bodies gave way
             report.work[None] += ti.cast(sim.confinement * particles.volume[p] * (sim.J_start - J), ti.f64)
+            if ti.static(sim.walls.holes > 0):
+                report.work[None] += sim.walls.ahead * latest_internal_work(sim, p)
             ti.atomic_max(report.speed[None], ti.cast(v.norm(), ti.f64))
             ti.atomic_min(report.J_min[None], ti.cast(J, ti.f64))
             ti.atomic_max(report.J_max[None], ti.cast(J_open, ti.f64))
@@ -111,7 +114,9 @@ def _survey(sim: ti.template()):
     for b in range(sim.report.boundary_count):
         for d in ti.static(range(sim.dim)):
             sim.report.values[FIXED + sim.dim + b * sim.dim + d] = sim.ledger.impulse[b][d]
-        sim.report.work[None] += sim.ledger.work[b] + 0.5 * sim.ledger.latest[b]
+        sim.report.work[None] += sim.ledger.work[b]
+        if ti.static(sim.walls.holes == 0):
+            sim.report.work[None] += 0.5 * sim.ledger.latest[b]
     for slot in sim.ledger.viscous:
         sim.report.work[None] += sim.ledger.body_work[slot]
         sim.report.dissipated[None] += sim.ledger.viscous[slot] + sim.ledger.released[slot]

@@ -135,6 +135,8 @@ class Walls:
         self.times.from_numpy(np.concatenate(times))
         self.loads.from_numpy(np.concatenate(loads))
         self.load = ti.field(ti.f64, self.holes)
+        self.dt = ti.field(ti.f64, ())  # of the latest step [s]
+        self.ahead = -0.5 if scene.order == "usf" else 0.5  # steps by which stress is ahead of velocity
 
     @ti.func
     def look_up(self, hole: ti.template(), time):
