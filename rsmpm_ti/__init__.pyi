@@ -43,6 +43,7 @@ from .setups.semicircular import semicircular_test as semicircular_test
 from .setups.uniaxial import uniaxial_test as uniaxial_test
 from .solver.observer import Observer as Observer
 from .solver.view import View as View
+from .spec.boundaries import Absorbing as Absorbing
 from .spec.boundaries import Fixed as Fixed
 from .spec.boundaries import Platen as Platen
 from .spec.boundaries import Wall as Wall

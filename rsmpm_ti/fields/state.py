@@ -66,6 +66,7 @@ class Simulation:
         self.scene, self.real, self.dim = scene, real, scene.dim
         self.rock, self.shape, self.transfer = scene.rock, scene.shape, scene.transfer
         self.boundaries = scene.loading.boundaries
+        self.absorbing = tuple(k for k, b in enumerate(self.boundaries) if getattr(b, "absorbs", False))
         self.stencil = offsets(scene.shape, scene.dim)
         self.rows = rows(scene.shape, scene.dim)
         self.size = len(self.stencil)  # nodes of a stencil

@@ -33,8 +33,8 @@ class Survey:
     far_strays: int  # those among them that are more than half a cell beyond its row
     momentum: np.ndarray  # [kg m/s], [dim]
     impulse: np.ndarray  # of each boundary on the body since the start [N s], [boundaries, dim]
-    work: float  # of boundaries, body force and confining pressure since the start [J]
-    dissipated: float  # by failure and viscosity since the start [J]
+    work: float  # of boundaries, body force, pressure in holes and confinement since the start [J]
+    dissipated: float  # by failure and viscosity, and absorbed by boundaries, since the start [J]
     failed_tension: int
     failed_shear: int
 
@@ -114,9 +114,11 @@ def _survey(sim: ti.template()):
     for b in range(sim.report.boundary_count):
         for d in ti.static(range(sim.dim)):
             sim.report.values[FIXED + sim.dim + b * sim.dim + d] = sim.ledger.impulse[b][d]
-        sim.report.work[None] += sim.ledger.work[b]
-        if ti.static(sim.walls.holes == 0):
-            sim.report.work[None] += 0.5 * sim.ledger.latest[b]
+        sim.report.work[None] += sim.ledger.work[b] + sim.walls.latest * sim.ledger.latest[b]
+    for b in ti.static(sim.absorbing):
+        given = sim.ledger.work[b] + sim.walls.latest * sim.ledger.latest[b]
+        sim.report.work[None] -= given
+        sim.report.dissipated[None] -= given
     for slot in sim.ledger.viscous:
         sim.report.work[None] += sim.ledger.body_work[slot]
         sim.report.dissipated[None] += sim.ledger.viscous[slot] + sim.ledger.released[slot]

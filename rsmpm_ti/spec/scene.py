@@ -19,7 +19,7 @@ from rsmpm_ti.method.transfer import Apic, PicFlip
 from rsmpm_ti.rock.criteria import Unbreakable
 from rsmpm_ti.rock.heterogeneity import check_scale
 from rsmpm_ti.rock.rock import Rock
-from rsmpm_ti.spec.boundaries import Fixed, Platen, Wall
+from rsmpm_ti.spec.boundaries import Absorbing, Fixed, Platen, Wall
 from rsmpm_ti.spec.confinement import check_confined_rock
 from rsmpm_ti.spec.domain import Domain
 from rsmpm_ti.spec.ground.gravity import ForceField, Gravity, check_gravity
@@ -64,7 +64,7 @@ class Body:
     spin: Annotated[Spin, Finite] = 0.0
 
 
-Boundary = Platen | Wall | Fixed
+Boundary = Platen | Wall | Fixed | Absorbing
 
 
 @checked("loading")

@@ -119,6 +119,7 @@ class Walls:
     def __init__(self, scene: Scene, grid: Grid, rock: Seeds):
         pressures, dim = [hole for _, hole in pressures_of(scene)], scene.dim
         self.holes = len(pressures)
+        self.latest = 0.0 if pressures else 0.5  # part of boundaries' latest work that counts: mpm/holes/press.py
         if self.holes == 0:
             return
         forces = [unit_forces(scene, grid, hole.region, rock) for hole in pressures]
