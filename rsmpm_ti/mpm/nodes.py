@@ -7,8 +7,8 @@ v_i <- v_i + dt (f_i / m_i + b)                       (momentum equation, paper 
 import taichi as ti
 
 from rsmpm_ti.fields.nodes import SMALL_MASS
-from rsmpm_ti.mpm.holes.press import book_walls
 from rsmpm_ti.mpm.contact import clear_gaps, keep_state, kept_state, squeeze, touching
+from rsmpm_ti.mpm.holes.press import book_walls
 from rsmpm_ti.mpm.wall_nodes import extend, fold
 
 

@@ -92,7 +92,7 @@ def test_unknown_missing_and_wrong_fields_are_refused_by_place():
         ("bodies.0.region", {"type": "Linear"}, "Box, Disc"),
         ("bodies.0.seeding", {"type": "Linear"}, "Lattice or Jittered"),
         ("rock.criterion", {"type": "Void"}, "MohrCoulomb or Unbreakable"),
-        ("loading.boundaries", [{"type": "Affine"}], "a list of Platen, Wall or Fixed"),
+        ("loading.boundaries", [{"type": "Affine"}], "a list of Platen, Wall, Fixed or Absorbing"),
         ("bodies", {"type": "Affine"}, "a list of Body"),
     ],
 )

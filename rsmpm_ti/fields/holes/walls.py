@@ -27,6 +27,10 @@ SMALL = 1e-5
 """Part of the largest q_i below which a node lies within the hole: round-off, also of single precision."""
 
 
+CLOSED = 0.3
+"""Part of the forces of a hole by which those of the rock around it may differ where it has rock on all sides."""
+
+
 @ti.kernel
 def _sum_gradients(
     shape: ti.template(), dim: ti.template(), xi: ti.types.ndarray(), volume: ti.types.ndarray(),
@@ -63,7 +67,12 @@ def unit_forces(scene: Scene, grid: Grid, region, rock: Seeds) -> tuple[np.ndarr
     q = -_gradients(scene, grid, Seeds(rock.x[near], rock.volume[near]), first, last)
     size = np.abs(hole).max(axis=-1)
     node = np.argwhere(size > SMALL * size.max())
-    return (node + first).astype(np.int32), q[tuple(node.T)] * scene.domain.dx ** (dim - 1)
+    hole, q = hole[tuple(node.T)], q[tuple(node.T)]
+    if np.abs(hole - q).sum() < CLOSED * np.abs(hole).sum():
+        # it pushes nothing away, which points in the hole know and jittered rock does not
+        size = np.linalg.norm(q, axis=1, keepdims=True)
+        q += (hole.sum(axis=0) - q.sum(axis=0)) * size / size.sum()
+    return (node + first).astype(np.int32), q * scene.domain.dx ** (dim - 1)
 
 
 def _extent(grid: Grid, x: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

@@ -92,7 +92,7 @@ def check_pressures(scene) -> None:
             allowed = f"a region in the domain, from {lower.tolist()} to {upper.tolist()} m"
             raise refuse(f"holes[{k}].region", hole.region, allowed)
         cells = np.minimum(high, upper + scene.domain.dx) - np.maximum(low, lower - scene.domain.dx)
-        if math.prod(cells / scene.domain.dx) * scene.bodies[0].seeding.particles_per_axis**scene.dim > MOST_POINTS:
+        if math.prod(cells / scene.domain.dx) * scene.bodies[0].seeding.particles_per_axis ** scene.dim > MOST_POINTS:
             allowed = f"a region of at most {MOST_POINTS:.3g} points of seeding"
             raise refuse(f"holes[{k}].region", hole.region, allowed)
 
@@ -117,17 +117,17 @@ def check_walls(scene, seeds: list[Seeds]) -> None:
         x = np.concatenate([body.x for body in seeds])
         low, high = hole.region.bounds()
         x = x[np.all((x > low - 2.0 * scene.domain.dx) & (x < high + 2.0 * scene.domain.dx), axis=1)]
-        held = np.all([inside(hole.region, x + step) for step in _around(scene.dim, 0.5 * spacing)], axis=0)
+        held = np.all([inside(hole.region, x + step) for step in around(scene.dim, 0.5 * spacing)], axis=0)
         if held.any():
             place = x[held][0].tolist()
             allowed = f"a region without rock: there is some at {place} m"
             raise refuse(name, hole.region, allowed, "cut it from the body by Difference")
-        near = np.any([inside(hole.region, x + step) for step in _around(scene.dim, 1.5 * spacing)], axis=0)
+        near = np.any([inside(hole.region, x + step) for step in around(scene.dim, 1.5 * spacing)], axis=0)
         if not near.any():
             raise refuse(name, hole.region, "beside rock", "it has no wall on which to press")
 
 
-def _around(dim: int, distance: float) -> np.ndarray:
+def around(dim: int, distance: float) -> np.ndarray:
     """Steps to a point itself and to its neighbours along the axes [m]."""
     axes = distance * np.eye(dim)
     return np.concatenate([np.zeros((1, dim)), axes, -axes])
