@@ -53,6 +53,7 @@ from .spec.drawings.mesh import Mesh as Mesh
 from .spec.drawings.polygon import Polygon as Polygon
 from .spec.ground.gravity import Gravity as Gravity
 from .spec.ground.in_situ import InSitu as InSitu
+from .spec.holes.excavation import Excavation as Excavation
 from .spec.holes.pressure import HolePressure as HolePressure
 from .spec.library.rocks import load_rock as load_rock
 from .spec.library.rocks import load_sheet as load_sheet

@@ -61,11 +61,13 @@ HISTORY = Table(
         Column(
             name="energy_dissipated_J",
             unit="J",
-            about="dissipated since the start by failure, viscosity, local damping and PIC's part of the transfer",
+            about="dissipated since the start by failure, viscosity, local damping and PIC's part of the transfer, gone "
+            "with rock that was dropped or excavated, and absorbed by boundaries",
             value=lambda view: view.survey.dissipated,
         ),
         Column(
-            name="work_J", unit="J", about="work of boundaries, body force and confining pressure since the start",
+            name="work_J", unit="J", about="work of boundaries, body force, confining pressure, pressure in holes and "
+            "supports of what was excavated, since the start",
             value=lambda view: view.survey.work,
         ),
         Column(

@@ -148,6 +148,7 @@ def numbers_of(run, view, fracture: Fracture | None, speed: float, stopped: str,
         "kinetic_share_after": kinetic_share_after(view.history, what_broke["first_failure_time_s"]),
         **(fracture.numbers() if fracture is not None else {}),
         **run.drive.dropped.numbers(),
+        "excavated": run.drive.digging.taken,
         "stopped": stopped,
         "complete": complete,
     }

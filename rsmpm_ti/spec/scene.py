@@ -25,7 +25,8 @@ from rsmpm_ti.spec.domain import Domain
 from rsmpm_ti.spec.ground.gravity import ForceField, Gravity, check_gravity
 from rsmpm_ti.spec.ground.in_situ import InSitu, check_initial_stress
 from rsmpm_ti.spec.ground.settling import check_settling
-from rsmpm_ti.spec.holes.pressure import HolePressure, check_pressures, check_walls
+from rsmpm_ti.spec.holes.excavation import Excavation, check_excavations, filled
+from rsmpm_ti.spec.holes.pressure import HolePressure, check_holes, check_walls
 from rsmpm_ti.spec.load_cell import LoadCell
 from rsmpm_ti.spec.loading_start import Affine, AtRest, Press, Program, Ramp
 from rsmpm_ti.spec.mass_scaling import MAX_TIME_SCALE, estimate
@@ -87,7 +88,7 @@ class Loading:
     over the force out of balance (see `mpm/local_damping.py`). With time_scale = 'auto', which looks no further than
     the first failure, there are both unless they are given, so that it holds to the end.
     cell: what is measured, and gauges; what it leaves open comes from the platens (see `load_cell.py`).
-    holes: pressures on the walls of holes (see `holes/pressure.py`).
+    holes: pressures on the walls of holes (`holes/pressure.py`), and rock that is excavated (`holes/excavation.py`).
     """
 
     boundaries: Annotated[
@@ -109,7 +110,7 @@ class Loading:
     settle: bool = False
     servo: Servo | None = None
     local_damping: Annotated[float, Interval(ge=0.0, le=0.8), Remedy("0.8 is what static problems take")] | None = None
-    holes: Annotated[tuple[HolePressure, ...], Len(0, MAX_BOUNDARIES)] = ()
+    holes: Annotated[tuple[Annotated[HolePressure | Excavation, ByType], ...], Len(0, MAX_BOUNDARIES)] = ()
 
     @property
     def platens(self) -> tuple[Platen, Platen] | None:
@@ -236,7 +237,7 @@ class Scene:
         check_initial_stress(self)
         check_gravity(self)
         check_settling(self)
-        check_pressures(self)
+        check_holes(self)
         check_quasi_static(self)
         check_bodies(self)
         check_loading(self)
@@ -320,13 +321,14 @@ class Scene:
         seeds = []
         for k, body in enumerate(self.bodies):
             check_cuts(body, self.shape, self.domain.dx, origin, turn)
-            seeds.append(body.seeding.fill(body.region, origin, self.domain.dx))
+            seeds.append(filled(self, body))
             if len(seeds[-1].x) == 0:
                 raise SceneError(f"bodies[{k}].region holds no particle: it is smaller than dx = {self.domain.dx} m")
         check_memory(self, sum(len(body.x) for body in seeds))
         check_overlap(self, seeds)
         check_platens(self, seeds)
         check_walls(self, seeds)
+        check_excavations(self, seeds)
         return seeds
 
     def elastic(self) -> "Scene":

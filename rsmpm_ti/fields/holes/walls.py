@@ -18,8 +18,9 @@ import itertools
 import numpy as np
 import taichi as ti
 
+from rsmpm_ti.errors import SceneError
 from rsmpm_ti.fields.grid import Grid
-from rsmpm_ti.spec.holes.pressure import fill_hole, pressures_of
+from rsmpm_ti.spec.holes.pressure import HolePressure, fill_hole
 from rsmpm_ti.spec.scene import Scene
 from rsmpm_ti.spec.seeding import Seeds
 
@@ -54,30 +55,51 @@ def _sum_gradients(
                 q[node, d] += volume[g] * slope
 
 
+def _box(scene: Scene, grid: Grid, points: Seeds) -> tuple[np.ndarray, np.ndarray]:
+    """First and last node of a box around the stencils of points."""
+    xi = grid.coordinates_at(points.x) - scene.shape.shift
+    first, last = np.floor(xi.min(axis=0)).astype(np.int32), np.floor(xi.max(axis=0)).astype(np.int32)
+    return first - 1, last + scene.shape.width
+
+
+def _at_wall(hole: np.ndarray) -> np.ndarray:
+    """Which nodes of a box are at the wall of a hole whose gradients these are."""
+    size = np.abs(hole).max(axis=-1)
+    return size > SMALL * size.max()
+
+
 def unit_forces(scene: Scene, grid: Grid, region, rock: Seeds) -> tuple[np.ndarray, np.ndarray]:
     """Nodes at the wall of a hole, [n, dim], and their force per pressure [m^(dim-1)], [n, dim]; rock: all particles.
 
     Taichi must have started.
     """
-    points, shape, dim = fill_hole(scene, region), scene.shape, scene.dim
-    low, high = (xi - shape.shift for xi in _extent(grid, points.x))
-    first, last = np.floor(low).astype(np.int32) - 1, np.floor(high).astype(np.int32) + shape.width
+    points = fill_hole(scene, region)
+    first, last = _box(scene, grid, points)
     near = np.all(np.abs(grid.coordinates_at(rock.x) - 0.5 * (first + last)) < 0.5 * (last - first) + 2.0, axis=1)
     hole = _gradients(scene, grid, points, first, last)
     q = -_gradients(scene, grid, Seeds(rock.x[near], rock.volume[near]), first, last)
-    size = np.abs(hole).max(axis=-1)
-    node = np.argwhere(size > SMALL * size.max())
+    node = np.argwhere(_at_wall(hole))
     hole, q = hole[tuple(node.T)], q[tuple(node.T)]
     if np.abs(hole - q).sum() < CLOSED * np.abs(hole).sum():
         # it pushes nothing away, which points in the hole know and jittered rock does not
         size = np.linalg.norm(q, axis=1, keepdims=True)
         q += (hole.sum(axis=0) - q.sum(axis=0)) * size / size.sum()
-    return (node + first).astype(np.int32), q * scene.domain.dx ** (dim - 1)
+    return (node + first).astype(np.int32), q * scene.domain.dx ** (scene.dim - 1)
 
 
-def _extent(grid: Grid, x: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    xi = grid.coordinates_at(x)
-    return xi.min(axis=0), xi.max(axis=0)
+def support_nodes(scene: Scene, grid: Grid, region) -> np.ndarray:
+    """Nodes at the wall of a region and beside them, [n, dim]: those on which its rock presses, also when it has moved
+    by half a cell."""
+    first, last = _box(scene, grid, points := fill_hole(scene, region))
+    first, last = np.maximum(first - 1, 0), np.minimum(last + 1, np.array(grid.nodes) - 1)
+    there = _at_wall(_gradients(scene, grid, points, first, last))
+    for axis in range(scene.dim):
+        along = np.moveaxis(there, axis, 0)
+        wide = along.copy()
+        wide[1:] |= along[:-1]
+        wide[:-1] |= along[1:]
+        there = np.moveaxis(wide, 0, axis)
+    return (np.argwhere(there) + first).astype(np.int32)
 
 
 def _gradients(scene: Scene, grid: Grid, points: Seeds, first: np.ndarray, last: np.ndarray) -> np.ndarray:
@@ -121,25 +143,30 @@ def _fold(q: np.ndarray, grid: Grid, first: np.ndarray, width: int) -> None:
 class Walls:
     """Nodes on the walls of all holes of a scene, the holes one after another; nothing where there is no hole.
 
-    load: what each hole's nodes are loaded by now: of a pressure, it [Pa]; force: that on each node in the latest step
-    [N]. Times and loads of all tables stand one after another too, those of hole h from starts[h] to starts[h + 1].
+    load: what the nodes of each hole are loaded by now: of a pressure, it [Pa], of a support, the part that is left. q:
+    their force per load; force: that of the latest step [N]. first: the first node of each hole, and the end; starts:
+    the same of the tables of times and loads, which stand one after another too.
     """
 
     def __init__(self, scene: Scene, grid: Grid, rock: Seeds):
-        pressures, dim = [hole for _, hole in pressures_of(scene)], scene.dim
-        self.holes = len(pressures)
-        self.latest = 0.0 if pressures else 0.5  # part of boundaries' latest work that counts: mpm/holes/press.py
+        holes, dim = scene.loading.holes, scene.dim
+        self.holes = len(holes)
+        self.latest = 0.0 if holes else 0.5  # part of boundaries' latest work that counts: mpm/holes/press.py
         if self.holes == 0:
             return
-        forces = [unit_forces(scene, grid, hole.region, rock) for hole in pressures]
+        forces = [
+            unit_forces(scene, grid, hole.region, rock) if isinstance(hole, HolePressure)
+            else (nodes := support_nodes(scene, grid, hole.region), np.zeros(nodes.shape)) for hole in holes
+        ]  # fmt: skip
         node, q = (np.concatenate(part) for part in zip(*forces, strict=True))
-        self.size = len(node)
+        counts = [len(n) for n, _ in forces]
+        self.size, self.first = len(node), tuple(itertools.accumulate(counts, initial=0))
         self.node, self.hole = ti.Vector.field(dim, ti.i32, self.size), ti.field(ti.i32, self.size)
         self.q, self.force = ti.Vector.field(dim, ti.f64, self.size), ti.Vector.field(dim, ti.f64, self.size)
         self.node.from_numpy(node)
         self.q.from_numpy(q)
-        self.hole.from_numpy(np.repeat(np.arange(self.holes), [len(n) for n, _ in forces]).astype(np.int32))
-        times, loads = zip(*(hole.table for hole in pressures), strict=True)
+        self.hole.from_numpy(np.repeat(np.arange(self.holes), counts).astype(np.int32))
+        times, loads = zip(*(hole.table for hole in holes), strict=True)
         self.starts = tuple(itertools.accumulate(map(len, times), initial=0))
         self.times, self.loads = ti.field(ti.f64, self.starts[-1]), ti.field(ti.f64, self.starts[-1])
         self.times.from_numpy(np.concatenate(times))
@@ -147,6 +174,16 @@ class Walls:
         self.load = ti.field(ti.f64, self.holes)
         self.dt = ti.field(ti.f64, ())  # of the latest step [s]
         self.ahead = -0.5 if scene.order == "usf" else 0.5  # steps by which stress is ahead of velocity
+
+    def state(self) -> dict[str, np.ndarray]:
+        """What a run goes on with: the forces of supports are known only when their rock is taken out."""
+        return {"wall_forces": self.q.to_numpy()} if self.holes else {}
+
+    def resume(self, state: dict[str, np.ndarray]) -> None:
+        if self.holes and state["wall_forces"].shape != (self.size, self.q.n):
+            raise SceneError(f"the checkpoint has other walls of holes than {self.size} nodes; start anew")
+        if self.holes:
+            self.q.from_numpy(state["wall_forces"])
 
     @ti.func
     def look_up(self, hole: ti.template(), time):

@@ -81,18 +81,18 @@ def fill_hole(scene, region) -> Seeds:
     return Seeds(points.x[held], points.volume[held])
 
 
-def check_pressures(scene) -> None:
-    """Raises SceneError for a pressure that does not fit its scene, as far as no particle need be seeded."""
+def check_holes(scene) -> None:
+    """Raises SceneError for a hole that does not fit its scene, as far as no particle need be seeded."""
     lower, upper = np.array(scene.domain.lower), np.array(scene.domain.upper)
-    for k, hole in pressures_of(scene):
+    for k, hole in enumerate(scene.loading.holes):
         low, high = hole.region.bounds()
         if len(low) != scene.dim:
             raise SceneError(f"holes[{k}].region has {len(low)} dimensions, domain has {scene.dim}")
         if np.any(low >= upper) or np.any(high <= lower):
             allowed = f"a region in the domain, from {lower.tolist()} to {upper.tolist()} m"
             raise refuse(f"holes[{k}].region", hole.region, allowed)
-        cells = np.minimum(high, upper + scene.domain.dx) - np.maximum(low, lower - scene.domain.dx)
-        if math.prod(cells / scene.domain.dx) * scene.bodies[0].seeding.particles_per_axis ** scene.dim > MOST_POINTS:
+        cells = (high - low) / scene.domain.dx + 2.0
+        if math.prod(cells) * scene.bodies[0].seeding.particles_per_axis ** scene.dim > MOST_POINTS:
             allowed = f"a region of at most {MOST_POINTS:.3g} points of seeding"
             raise refuse(f"holes[{k}].region", hole.region, allowed)
 
