@@ -28,6 +28,7 @@ from rsmpm_ti.rock.elasticity import Hooke
 from rsmpm_ti.spec.domain import Domain
 from rsmpm_ti.spec.ground.gravity import Gravity
 from rsmpm_ti.spec.ground.in_situ import InSitu
+from rsmpm_ti.spec.holes.excavation import Excavation
 from rsmpm_ti.spec.holes.pressure import HolePressure
 from rsmpm_ti.spec.load_cell import Gauge, LoadCell
 from rsmpm_ti.spec.loader import load_scene
@@ -72,6 +73,9 @@ GIVEN = {
 """A good value for every field without a default, by its name."""
 
 
+CORNER = Box(lower=(0.0,) * 3, upper=(0.004,) * 3)
+
+
 @functools.cache
 def bases() -> list[Scene]:
     """Small scenes in which together every class can stand."""
@@ -93,7 +97,8 @@ def bases() -> list[Scene]:
     drilled = replace(plain.bodies[0], region=Difference(whole=plain.bodies[0].region, removed=(hole,)))
     pressed = HolePressure(region=hole, times=(1e-3, 2e-3), pressures=(1e6, 0.0))
     blasted = replace(timed, bodies=(drilled,), loading=replace(timed.loading, holes=(pressed,)))
-    return [plain, timed, lab, steered, solid, ground, blasted]
+    dug = replace(ground, loading=replace(ground.loading, holes=(Excavation(region=CORNER, time=1e-6),)))
+    return [plain, timed, lab, steered, solid, ground, blasted, dug]
 
 
 def at(thing, path: list):

@@ -19,6 +19,7 @@ from rsmpm_ti.method.tensor_product import offsets, rows
 from rsmpm_ti.rock.tensors import PACKED_LENGTH
 from rsmpm_ti.spec.confinement import confined_volume_ratio
 from rsmpm_ti.spec.ground.in_situ import start_stress
+from rsmpm_ti.spec.holes.excavation import Excavation
 from rsmpm_ti.spec.loading_start import Affine
 from rsmpm_ti.spec.review.memory import use_sparse_grid
 from rsmpm_ti.spec.scene import Scene
@@ -91,6 +92,7 @@ class Simulation:
         self.contacts = Contacts(scene, self.grid, real)
         self.drops = scene.domain.outside == "drop"
         self.outside_is_sick = 0 if self.drops else 1
+        self.loses = self.drops or any(isinstance(hole, Excavation) for hole in scene.loading.holes)
         count = sum(len(body.x) for body in seeds)
         if count >= 2**31:
             raise SceneError(f"{count} particles are more than 2^31 - 1; use a larger dx or fewer particles per axis")
