@@ -125,7 +125,7 @@ def test_scene_recorded_before_the_move_still_loads(tmp_path):
     recorded["rock"]["averaging"]["length"] = 2e-3
     path.write_text(json.dumps(manifest))
     recorded["loading"] |= {"cell": to_plain(LoadCell()), "initial_stress": None, "settle": False}
-    recorded["loading"] |= {"servo": None, "local_damping": None}
+    recorded["loading"] |= {"servo": None, "local_damping": None, "holes": []}
     for platen in recorded["loading"]["boundaries"]:
         platen |= {"pulls": False, "force": None, "stress": None}
     recorded["schedule"]["stop_after_drop"] = None

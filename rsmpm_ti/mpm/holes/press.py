@@ -63,7 +63,7 @@ def book_remap(sim: ti.template(), dt: ti.template()):
 
         dW = dt f . (v_old + v_remapped)/2,
 
-    of which `book_walls` has booked v for v_remapped. It matters for nodes that hold little rock, as those of a wall do.
+    of which `book_walls` has booked v for v_remapped. It matters for nodes that hold little rock, as many of a wall do.
     """
     if ti.static(sim.walls.holes > 0):
         for _ in range(1):
