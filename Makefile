@@ -8,7 +8,7 @@ PYTHONS = $(if $(PYTHON),$(PYTHON),python3.13 python3.12 python3.11 python3.10 p
 STAMP   = $(VENV)/.installed$(if $(PYTHON),-$(notdir $(PYTHON)))
 SUITED  = import sys; sys.exit(not (3, 10) <= sys.version_info[:2] <= (3, 13))
 
-.PHONY: help cube disc intact test lint versions oldest newest validation verify hardcases study clean
+.PHONY: help cube disc intact test lint versions oldest newest thorough validation verify hardcases study clean
 
 help:
 	@echo 'make cube        slit cube in uniaxial compression    -> renders/cube/'
@@ -18,6 +18,7 @@ help:
 	@echo 'make test        the test suite'
 	@echo 'make lint        ruff check, ruff format --check, mypy'
 	@echo 'make versions    the tests that touch other packages, with the lowest and the highest versions that are allowed'
+	@echo 'make thorough    the rest of the tests that CI runs'
 	@echo 'make validation  the longer tier of tests'
 	@echo 'make verify      the solver against exact solutions and finite elements; ARGS=--full for all of it'
 	@echo 'make hardcases   hard cases and their verdicts; ARGS=--full for all of it'
@@ -33,6 +34,9 @@ cube disc intact: $(STAMP)
 
 test: $(STAMP)
 	$(RUN) -m pytest -n 2 --dist worksteal $(ARGS)
+
+thorough: $(STAMP)
+	$(RUN) -m pytest -n 2 --dist worksteal -m thorough $(ARGS)
 
 validation: $(STAMP)
 	$(RUN) -m pytest -m validation $(ARGS)

@@ -17,7 +17,15 @@ KEPT = {"taichi_f64", "taichi_real", "every_traversal"}
 """Fixtures whose Taichi a file's tests share, and with it fields that they may keep from one to the next."""
 
 
+def concerns(mark, item) -> bool:
+    """Whether a mark is one of this test: `thorough("a", "b")` is of the parameter sets of these names alone."""
+    return mark.name != "thorough" or not mark.args or item.callspec.id in mark.args
+
+
+@pytest.hookimpl(tryfirst=True)  # before those that -m leaves out are taken out
 def pytest_collection_modifyitems(items) -> None:
+    for item in items:
+        item.own_markers = [mark for mark in item.own_markers if concerns(mark, item)]
     items.sort(key=lambda item: not item.nodeid.startswith(FIRST))
     keepers = {item.path for item in items if KEPT & set(item.fixturenames)}
     for item in items:

@@ -5,10 +5,12 @@ import math
 import os
 import sys
 import warnings
+from dataclasses import replace
 from pathlib import Path
 
 from rsmpm_ti.errors import RockWarning, SceneError, refuse, shown
 from rsmpm_ti.lab.catalogue import TESTS
+from rsmpm_ti.lab.drawing import Drawing
 from rsmpm_ti.lab.quantity import over_seeds
 from rsmpm_ti.lab.standard import LabTest, Options, Specimen
 from rsmpm_ti.process import command, tell
@@ -31,6 +33,9 @@ def parser() -> argparse.ArgumentParser:
     p.add_argument(
         "--confinement", metavar="P,...", help="of a triaxial set, or normal stresses of shear: 0,5MPa,10MPa"
     )
+    p.add_argument("--drawing", metavar="FILE", help="of ucs and triaxial: an outline (.stl), an image whose darker "
+                   "half is rock (.png), or flaws x1, y1, x2, y2, a row each (.csv)")  # fmt: skip
+    p.add_argument("--scale", metavar="L", help="one unit of the drawing, or one pixel (default 1mm)")
     p.add_argument("--seeds", type=int, default=1, metavar="N", help="specimens of each kind; means get error bars")
     p.add_argument("--quick", action="store_true", help="coarser cells")
     p.add_argument("--out", metavar="DIR", help="folder of the report (default renders/lab/TEST)")
@@ -80,11 +85,21 @@ def options_of(options: argparse.Namespace) -> Options:
             raise refuse(
                 "--confinement", options.confinement, "pressures that differ", "for more of each, give --seeds"
             )
+    scale = number("scale", options.scale, "m")
+    if scale is not None and (options.drawing is None or not 1e-9 <= scale <= 1e3):
+        raise refuse("--scale", options.scale, "a length from 1 nm to 1 km, beside a --drawing")
+    drawing = None
+    if options.drawing is not None:
+        if options.test not in ("ucs", "triaxial"):
+            raise refuse("--drawing", options.drawing, "left out but for ucs and triaxial")
+        drawing = Drawing(file=options.drawing, scale=scale or 1e-3)
+        if size is not None and not drawing.is_traces:
+            raise refuse("--size", options.size, "left out beside the drawing of a specimen", "give its --scale")
     if not 1 <= options.seeds <= MAX_SEEDS:
         raise refuse("--seeds", options.seeds, f"in [1, {MAX_SEEDS}]")
     if options.jobs is not None and options.jobs < 1:
         raise refuse("--jobs", options.jobs, "1 or more")
-    return Options(size=size, dx=dx, confinements=pressures, quick=options.quick)
+    return Options(size=size, dx=dx, confinements=pressures, quick=options.quick, drawing=drawing)
 
 
 def _is_nothing(text: str) -> bool:
@@ -161,6 +176,8 @@ def run(test, sheet, asked: Options, specimens, out: Path, options, arguments: l
         return 3
     measured = [[read_back(one, out / "runs" / one.label) for one in seed] for seed in specimens]
     quantities = over_seeds([test.read(seed) for seed in measured])
+    if asked.drawing is not None:  # what the sheet says is of intact rock
+        quantities = [replace(quantity, given=math.nan) for quantity in quantities]
     report = report_of(test, sheet, asked, [command_of(arguments)], measured, quantities)
     write_records(out, report)
     write_page(out, report, measured)

@@ -6,6 +6,7 @@ from pathlib import Path
 
 import numpy as np
 
+from rsmpm_ti.lab.drawing import Drawing
 from rsmpm_ti.lab.quantity import Quantity
 from rsmpm_ti.rock.sheet.data_sheet import DataSheet
 from rsmpm_ti.spec.scene import Scene
@@ -14,12 +15,13 @@ from rsmpm_ti.spec.scene import Scene
 @dataclass(frozen=True, kw_only=True)
 class Options:
     """Of a test. size: what the test calls its size [m], None for its own; dx: cell [m], None for its own;
-    confinements [Pa], of those that have any; quick: coarser."""
+    confinements [Pa], of those that have any; quick: coarser; drawing: of the specimen, None for the standard's."""
 
     size: float | None = None
     dx: float | None = None
     confinements: tuple[float, ...] | None = None
     quick: bool = False
+    drawing: Drawing | None = None
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -7,7 +7,7 @@ from rsmpm_ti.spec.domain import Domain
 from rsmpm_ti.spec.load_cell import LoadCell
 from rsmpm_ti.spec.loading_start import Affine
 from rsmpm_ti.spec.quasi_static.servo import Servo
-from rsmpm_ti.spec.regions import Box, Difference, Slit
+from rsmpm_ti.spec.regions import Box, Difference, Region, Segments, Slit
 from rsmpm_ti.spec.scene import Body, Loading, Output, Scene, Schedule
 from rsmpm_ti.spec.seeding import Jittered, Lattice
 
@@ -18,7 +18,8 @@ def uniaxial_test(
     rock: Rock,
     dx: float,
     strain_end: float,
-    flaws: tuple[Slit, ...] = (),
+    flaws: tuple[Slit | Segments, ...] = (),
+    outline: Region | None = None,
     seeding: Lattice | Jittered | None = None,
     width: float = 50e-3,
     height: float = 100e-3,
@@ -35,13 +36,14 @@ def uniaxial_test(
 ) -> Scene:
     """A plate of width x height [m], its lower left corner at the origin, loaded along y from uniform straining on.
 
-    flaws: slits cut into it, in the plate's coordinates; seeding: Lattice() by default; room: empty grid on both sides
+    flaws: slits cut into it, in the plate's coordinates; outline: a specimen of this region in place of the plate, as
+    wide and as high; seeding: Lattice() by default; room: empty grid on both sides
     [m], into which it may bulge and pieces may fly; turn: of the grid against the plate [degrees], whose platens then
     hold both ways (`Domain.turn`); speed: at which each platen closes in [m/s]; a negative one, with a negative
     strain_end, pulls: direct tension. servo: slows them while rock breaks. cell: what is measured; by default the force
     of both platens over the width.
     """
-    plate = Box(lower=(0.0, 0.0), upper=(width, height))
+    plate = Box(lower=(0.0, 0.0), upper=(width, height)) if outline is None else outline
     glued = speed < 0.0 or turn != 0.0
     platens = (
         Platen(axis=1, side="lower", position=0.0, speed=speed, pulls=glued),

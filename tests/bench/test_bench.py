@@ -136,6 +136,7 @@ def test_fill_compares_both_grids_where_the_same_is_filled(capsys, monkeypatch):
         assert float(row[3]) > 0.0
 
 
+@pytest.mark.thorough
 def test_lab_rock_is_measured_whole_and_cracked(capsys, monkeypatch):
     from rsmpm_ti.bench import ratios
 

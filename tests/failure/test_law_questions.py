@@ -54,6 +54,7 @@ def test_snapshot_events_and_summary_agree_on_what_has_failed():
     assert len(result.events) == failed.sum() == result.summary["failed_tension"] + result.summary["failed_shear"]
 
 
+@pytest.mark.thorough
 def test_law_that_makes_more_events_than_it_says_ends_the_run_and_not_the_process():
     with pytest.raises(UnstableRun, match="Twice made more than max_events = 1 events") as stopped:
         simulate(scene(Twice()), threads=1)

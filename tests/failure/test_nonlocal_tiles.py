@@ -75,6 +75,7 @@ def test_means_of_needed_tiles_are_those_of_all(taichi_f64, length):
     assert needed_tiles(sim, LIMIT) == 0, "nothing is near its strength"
 
 
+@pytest.mark.thorough
 def test_run_cracks_as_if_all_of_the_grid_were_averaged(monkeypatch):
     """On one thread, bit for bit."""
     scene = load_scene(

@@ -17,6 +17,7 @@ from rsmpm_ti.spec.regions import Box, Disc
 from rsmpm_ti.spec.scene import Body, Loading, Scene, Schedule
 
 
+@pytest.mark.thorough
 def test_sparse_grid_gives_the_same_result_as_dense(as_written):
     scene = load_scene(
         "cube", dx=2e-3, flaw_width=6e-3, strain_end=1.5e-4, time_scale=16.0, settings={"shape": "Linear"}
@@ -31,6 +32,7 @@ def test_sparse_grid_gives_the_same_result_as_dense(as_written):
     assert np.array_equal(runs[0].events.id, runs[1].events.id)
 
 
+@pytest.mark.thorough
 def test_sparse_grid_holds_only_blocks_with_material(taichi_f64):
     from rsmpm_ti.fields.cell_order import sort_particles
     from rsmpm_ti.fields.state import Simulation
@@ -95,6 +97,7 @@ WIDE = [pytest.param(shape, marks=pytest.mark.validation) for shape in (Gimp(), 
 
 
 @pytest.mark.parametrize("shape", [Linear(), *WIDE], ids=lambda s: type(s).__name__)
+@pytest.mark.thorough
 def test_a_3d_block_has_youngs_modulus(shape):
     """Free sides in 3D: sigma = E strain exactly."""
     result = simulate(block_3d(shape, strain_end=2e-4, rows=40))

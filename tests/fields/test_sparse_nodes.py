@@ -84,6 +84,7 @@ def test_every_node_of_every_active_block_is_visited_once(restart_taichi, blocks
 
 @pytest.mark.parametrize("threads", [pytest.param(1, marks=pytest.mark.validation), 2])
 @pytest.mark.parametrize("cells", [(30, 30), (13, 18, 22), *LONG], ids=str)
+@pytest.mark.thorough("(13, 18, 22)-2")
 def test_sparse_run_is_the_dense_one(as_written, restart_taichi, cells, threads):
     """Bit for bit on one thread, and on two: the order of particles, and so of sums, is the same."""
     found = []
@@ -103,6 +104,7 @@ def test_sparse_run_is_the_dense_one(as_written, restart_taichi, cells, threads)
     [{}, *(pytest.param({"order": order}, marks=pytest.mark.validation) for order in ("usf", "usl"))],
     ids=lambda change: change.get("order", "musl"),
 )
+@pytest.mark.thorough
 def test_sparse_run_between_rough_platens_is_the_dense_one(as_written, change):
     """Bit for bit: the grid goes with the platens, and what nodes of their planes remember is no field of the nodes."""
     scene, found = load_scene("intact", dx=5e-3, strain_end=1e-4), []

@@ -40,6 +40,7 @@ CASES = [("musl", Linear()), ("musl", QuadraticBSpline()), ("usf", Linear()), ("
 
 
 @pytest.mark.parametrize(("order", "shape"), CASES, ids=str)
+@pytest.mark.thorough("Single-musl-QuadraticBSpline()")
 def test_free_fall_follows_symplectic_euler(order, shape):
     gravity, v0 = (3.0e4, -1.0e5), 5.0
     body = Body(region=Box(lower=(0.01, 0.02), upper=(0.02, 0.03)), velocity=(v0, 0.0))
@@ -77,6 +78,7 @@ class Swing:
 
 
 @pytest.mark.parametrize("order", ["musl", "usf"])
+@pytest.mark.thorough("Single-musl")
 def test_force_field_depends_on_time_and_place_and_its_work_is_booked(order):
     swing = Swing(g=1e5, w=2.0 * math.pi / 8e-5, k=1e6)
     scene = block(loading=Loading(force_field=swing), schedule=Schedule(t_end=4e-5, cfl=0.4, rows=4), order=order)
@@ -90,6 +92,7 @@ def test_force_field_depends_on_time_and_place_and_its_work_is_booked(order):
     assert result.history["work_J"][-1] == pytest.approx(energy, rel=1e-3)
 
 
+@pytest.mark.thorough("Single")
 def test_mass_scaling_leaves_the_weight_of_a_body_unchanged():
     """k times the time scale: k^2 the mass, so k^-2 the acceleration, and after k times the time the same fall."""
     fall = []
@@ -127,6 +130,7 @@ def test_a_stressed_disc_that_spins_ten_turns_fails_nowhere_at_80_percent_of_its
 
 
 @pytest.mark.parametrize("transfer", [PicFlip(), Apic()], ids=lambda t: type(t).__name__)
+@pytest.mark.thorough("Single-Apic", "Slabs-Apic")
 def test_colliding_discs_keep_momentum_and_bounce(transfer):
     """Sulsky, Chen & Schreyer (1994), two discs head on; physics of the exchange is exact in total momentum."""
     rock = Rock(density=1000.0, elasticity=Hooke(E=1000.0, nu=0.3), criterion=Unbreakable(), viscosity=NoViscosity())

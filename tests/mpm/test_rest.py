@@ -27,6 +27,7 @@ DX, CFL = 0.5, 0.9
 
 @pytest.mark.parametrize("order", ["musl", "usf"])
 @pytest.mark.parametrize("steps", [2, 3, 5])
+@pytest.mark.thorough("3-usf", "5-musl", "5-usf")
 def test_stops_of_any_rhythm_never_feed_a_body(order, steps):
     """A column that was pressed lets go. At rest a mode of frequency w has H = E (1 - (w dt)^2/4), which stops lower,
     and w dt <= 2 cfl on a lattice of linear cells: so E never exceeds its start by more than 1/(1 - cfl^2)."""

@@ -54,6 +54,18 @@ def test_each_traversal_is_taken(simulations, every_traversal):
 
 @every_shape
 @every_transfer
+@pytest.mark.thorough(
+    "Chunks-Apic-Gimp",
+    "Single-Apic-Gimp",
+    "Single-Apic-Linear",
+    "Single-Apic-QuadraticBSpline",
+    "Single-PicFlip-Gimp",
+    "Slabs-Apic-Gimp",
+    "Slabs-Apic-Linear",
+    "Slabs-Apic-QuadraticBSpline",
+    "Slabs-PicFlip-Gimp",
+    "Slabs-PicFlip-Linear",
+)
 def test_musl_step_is_that_of_a_plain_loop(simulations, shape, transfer):
     scene = walled_scene(shape) if isinstance(transfer, Apic) else free_scene(shape, transfer)
     compare_step(scene, shared(simulations, scene))
@@ -69,6 +81,7 @@ OTHER_ORDERS = [
 
 
 @pytest.mark.parametrize("scene", OTHER_ORDERS, ids=lambda scene: scene.order)
+@pytest.mark.thorough("Single-usf", "Single-usl", "Slabs-usf")
 def test_step_of_the_other_orders_is_that_of_a_plain_loop(simulations, scene):
     compare_step(scene, shared(simulations, scene))
 
@@ -77,6 +90,7 @@ def test_every_order_is_compared():
     assert {scene.order for scene in OTHER_ORDERS} | {"musl"} == set(ORDERS)
 
 
+@pytest.mark.thorough
 def test_step_in_3d_is_that_of_a_plain_loop(simulations):
     scene = make_scene(Linear(), Apic(), cells=(5, 4, 3), viscosity=BulkViscosity())
     compare_step(scene, shared(simulations, scene))

@@ -19,6 +19,7 @@ def test_device_and_threads_choose_the_traversal(restart_taichi, threads, gpu, d
     assert type(traversal(100, gpu, deterministic)) is expected
 
 
+@pytest.mark.thorough
 def test_step_in_single_precision_is_that_of_a_plain_loop_and_the_same_by_every_traversal(restart_taichi):
     """Two threads meet at the border of their slabs."""
     scene, found = free_scene(Linear(), PicFlip(flip=0.3)), []

@@ -67,6 +67,7 @@ def swung(turn: float, rotation: np.ndarray, **changes):
     ],
     ids=str,
 )
+@pytest.mark.thorough
 def test_a_body_on_a_turned_grid_moves_as_the_body_turned_back_on_a_straight_one(turn, shape, transfer):
     c, s = np.cos(np.radians(turn)), np.sin(np.radians(turn))
     back = np.array([[c, s], [-s, c]])
@@ -94,6 +95,7 @@ def pressed(**changes) -> Scene:
 
 
 @pytest.mark.parametrize("strain", [1e-3, -1e-3])
+@pytest.mark.thorough
 def test_platens_strain_a_plate_uniformly_by_their_position(strain):
     scene = pressed(strain_end=strain, speed=np.copysign(2.5e-3, strain))
     drive = Drive(scene, scene.particles(), ti.f64)
@@ -123,6 +125,7 @@ def test_a_turned_grid_knows_no_planes_of_nodes():
     assert "in [-45, 45] degrees" in refusal(lambda: replace(scene.domain, turn=50.0))
 
 
+@pytest.mark.thorough
 def test_a_ramp_presses_a_turned_grid_too():
     scene = pressed(strain_end=3e-4)
     ramp = Ramp(time=8.0 * 40e-3 / scene.wave_speed)

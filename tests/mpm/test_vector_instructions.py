@@ -39,6 +39,7 @@ def vector_arithmetic(ir: str) -> int:
 
 
 @pytest.mark.parametrize("threads", [1, 2])
+@pytest.mark.thorough
 def test_loops_over_a_run_have_vector_instructions(tmp_path, threads):
     """A branch, an atomic or a field touched first in a loop leaves nothing but single numbers, or a few pairs."""
     switches = {"TI_OFFLINE_CACHE": "0", "PYTHONPATH": str(ROOT)}

@@ -31,6 +31,8 @@ from rsmpm_ti import (
     simulate,
 )
 
+pytestmark = pytest.mark.thorough
+
 SPAN, DEPTH, DX, E = 80.0 * mm, 20.0 * mm, 1.0 * mm, 17.0 * GPa
 MIDDLE = 50.0 * mm
 PRESSED, END = 1.2 * ms, 1.8 * ms

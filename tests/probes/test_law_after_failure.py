@@ -15,6 +15,8 @@ import taichi as ti
 from rsmpm_ti import AfterFailure, Output, Variable, load_scene, simulate
 from rsmpm_ti.rock.tensors import isotropic, trace
 
+pytestmark = pytest.mark.thorough
+
 TAU = 2e-5  # [s]
 
 

@@ -5,6 +5,7 @@ import signal
 from pathlib import Path
 
 import numpy as np
+import pytest
 
 from rsmpm_ti import Observer, load_scene, simulate
 
@@ -51,6 +52,7 @@ def run(out: Path, stop_at: float = 2.0, resume: bool = False) -> Depths:
     return observer
 
 
+@pytest.mark.thorough
 def test_an_observer_of_ones_own_writes_at_its_own_interval_and_survives_resume(tmp_path):
     whole = run(tmp_path / "whole")
     files = written(tmp_path / "whole")

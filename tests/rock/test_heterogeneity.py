@@ -240,6 +240,7 @@ def test_particle_fails_at_its_own_strength_and_no_other(taichi_f64):
     assert recorded == pytest.approx(axial[own], rel=1e-12)  # an event keeps the stress itself, not its fraction of k
 
 
+@pytest.mark.thorough
 def test_specimen_first_fails_at_its_weakest_particle():
     """Stress is uniform until then: UCS of the rock times the smallest factor, at that particle's place."""
     # the paper's rule, by which a particle fails when its own stress reaches its strength

@@ -105,6 +105,7 @@ def account(flip: float, order: str) -> tuple[float, float]:
 
 
 @pytest.mark.parametrize("order", ["musl", "usf"])
+@pytest.mark.thorough
 def test_what_pic_takes_is_booked(order):
     """The account beats as that of pure FLIP does, since velocity and stress are half a step apart, and no more."""
     whole, nothing = account(1.0, order)

@@ -36,6 +36,7 @@ def pressed(region):
     [WEDGE, SECTION_OF_ROCK, Mesh(file=PLATE), Difference(whole=Mesh(file=PLATE), removed=(FLAWS,))],
     ids=["polygon", "thin section", "gmsh", "flaws"],
 )
+@pytest.mark.thorough("flaws", "gmsh", "polygon")
 def test_drawing_is_pressed_between_platens(region):
     made = pressed(region)
     result = simulate(made, threads=1)

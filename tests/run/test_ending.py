@@ -51,6 +51,7 @@ def test_load_that_is_only_rising_is_called_the_largest_so_far(tmp_path, capsys)
     assert "largest stress so far" in said and "peak stress" not in said
 
 
+@pytest.mark.thorough
 def test_specimen_that_bursts_after_its_peak_is_a_result(tmp_path, capsys):
     """The paper's rock flies apart and leaves the domain, which has two cells of room beside it."""
     along = ("--set", "turn=0", "--set", "bodies.0.seeding=Jittered", "--set", "transfer.flip=1")  # more violent
@@ -101,6 +102,7 @@ def test_what_has_not_burst_is_unstable(now, failures, created):
     assert burst(load(now), looked(failures), replace(BOOKS, created=created), FLOWN) == ""
 
 
+@pytest.mark.thorough
 def test_step_past_the_limit_makes_energy_and_bursts_nothing():
     """Breaking rock that is torn apart by its numbers: everything fails at once, and the load swings as it likes."""
     scene = load_scene("cube", dx=2e-3, flaw_width=6e-3, turn=0.0, strain_end=1e-3)
@@ -129,6 +131,7 @@ def test_stop_after_drop_needs_a_load_and_a_fraction():
 
 
 @pytest.mark.parametrize("number, status", [(signal.SIGINT, 130), (signal.SIGTERM, 143)], ids=["Ctrl-C", "SIGTERM"])
+@pytest.mark.thorough("SIGTERM")
 def test_run_that_a_signal_stops_has_the_status_of_a_shell(tmp_path, monkeypatch, capsys, number, status):
     row = Run._row
 
@@ -144,6 +147,7 @@ def test_run_that_a_signal_stops_has_the_status_of_a_shell(tmp_path, monkeypatch
     assert run(tmp_path, "--set", "strain_end=1e-4", "--resume")[0] == 0
 
 
+@pytest.mark.thorough
 def test_observer_looks_at_the_end_of_a_run_that_ends_by_its_load():
     from rsmpm_ti import Observer
 

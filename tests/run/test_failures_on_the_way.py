@@ -84,6 +84,7 @@ def test_killed_painter_costs_pictures_and_nothing_else(tmp_path):
 
 
 @linux
+@pytest.mark.thorough
 def test_stopped_painter_ends_with_the_run_at_a_second_signal(tmp_path):
     run = started(tmp_path, *SLOW)
     wait_for(tmp_path / "frames" / "stress_0002.png", run)
@@ -142,6 +143,7 @@ ENCODERS = {
 @pytest.mark.parametrize(
     "kind", ["false", *(pytest.param(kind, marks=pytest.mark.validation) for kind in ENCODERS if kind != "false")]
 )
+@pytest.mark.thorough
 def test_encoder_that_fails_costs_the_movie_and_a_warning(tmp_path, kind):
     program = tmp_path / "ffmpeg"
     if ENCODERS[kind] is not None:
@@ -165,6 +167,7 @@ STARVED = [("RLIMIT_FSIZE", 300_000), ("RLIMIT_NOFILE", 20), ("RLIMIT_NOFILE", 8
         *(pytest.param(*entry, marks=pytest.mark.validation) for entry in STARVED),
     ],
 )
+@pytest.mark.thorough
 def test_starved_run_says_so_in_one_line(tmp_path, limit, most):
     kind = getattr(resource, limit)
 

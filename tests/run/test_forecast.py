@@ -56,6 +56,7 @@ Linux]."""
 @pytest.mark.parametrize(
     "name", [n if n == "directional" else pytest.param(n, marks=pytest.mark.validation) for n in LARGE]
 )
+@pytest.mark.thorough
 def test_memory_is_what_a_run_takes_at_its_largest(tmp_path, name):
     scene_name, settings, steps = LARGE[name]
     wanted = repr((scene_name, settings, steps, str(tmp_path)))

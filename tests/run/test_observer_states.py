@@ -107,6 +107,7 @@ class Remembers(Observer):
         return dict(self.seen)  # as users write them: nothing before the first look
 
 
+@pytest.mark.thorough
 def test_a_state_that_cannot_be_kept_ends_the_run_as_it_starts_and_not_at_its_end(tmp_path):
     scene = load_scene("intact", dx=1e-2, strain_end=2e-4, settings=QUICK).elastic()
     with pytest.raises(ObserverError, match=r"observer Remembers: state\(\)\['a'\] has the key 1.*at step 0") as failed:

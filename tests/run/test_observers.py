@@ -125,6 +125,7 @@ def test_a_column_that_is_none_is_refused(column):
         simulate(scene(), columns=(column,))
 
 
+@pytest.mark.thorough
 def test_an_observer_that_raises_ends_the_run_in_one_line_and_all_else_is_written(tmp_path):
     failing, other = Counts(0.25, fail_at=0.6), Counts()
     with pytest.raises(ObserverError) as caught:
@@ -157,6 +158,7 @@ def test_more_than_a_checkpoint_is_read_back_with_is_no_state(monkeypatch):
         observer_arrays([Watch(counts)])
 
 
+@pytest.mark.thorough
 def test_other_observers_than_those_of_the_checkpoint_are_refused(tmp_path):
     simulate(scene(), out=tmp_path, threads=1, observers=(Counts(),))
     with pytest.raises(SceneError, match="observers is .'Counts'. there and .. here"):
@@ -200,6 +202,7 @@ class Keeps(Observer):
 
 
 @pytest.mark.parametrize("state", [ValueError("I forgot"), {"a": object()}])
+@pytest.mark.thorough
 def test_a_state_that_fails_at_the_end_costs_no_file_and_no_result(state, tmp_path):
     with pytest.raises(ObserverError, match="observer Keeps") as failed:
         simulate(scene(), out=tmp_path, observers=(Keeps(state),), threads=1)
@@ -207,6 +210,7 @@ def test_a_state_that_fails_at_the_end_costs_no_file_and_no_result(state, tmp_pa
     assert {"history.csv", "events.csv", "summary.json", "summary.png"} <= {path.name for path in tmp_path.iterdir()}
 
 
+@pytest.mark.thorough
 def test_numbers_of_numpy_are_a_state(tmp_path):
     observer = Keeps({"n": np.int64(3)})
     simulate(scene(), out=tmp_path, observers=(observer,), threads=1)

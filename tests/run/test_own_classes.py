@@ -6,6 +6,8 @@ import subprocess
 import sys
 from pathlib import Path
 
+import pytest
+
 from rsmpm_ti.scene import main
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -49,6 +51,7 @@ def scene():
 '''
 
 
+@pytest.mark.thorough
 def test_what_no_record_holds_does_not_end_a_run(tmp_path, monkeypatch, capsys):
     (tmp_path / "mine.py").write_text(SCENE)
     options = ["--set", "t_end=1e-5", "--set", "strain_end=none", "--frames", "0", "--no-movie", "--threads", "1"]

@@ -113,6 +113,7 @@ def checkpoint_time(folder: Path) -> float:
         return 0.0
 
 
+@pytest.mark.thorough
 def test_ctrl_c_and_sigterm_write_what_there_is_and_resume_goes_on(whole, tmp_path):
     scene, stops = build(parser().parse_args(RUN)), {0.3: signal.SIGINT, 0.6: signal.SIGTERM}
     for fraction, number in stops.items():
@@ -222,6 +223,7 @@ def strain_of(checkpoint) -> float:
 
 
 @pytest.mark.parametrize("adaptive", ["false", "true"])
+@pytest.mark.thorough("true")
 def test_a_run_that_is_done_goes_on_to_a_later_end_as_if_it_had_been_asked_for(tmp_path, adaptive):
     """With other rows and other output too: the same steps, but where they are cut to end in time (adaptive ones)."""
     steps = ("--set", f"schedule.adaptive={adaptive}")
@@ -256,6 +258,7 @@ def test_output_may_be_asked_for_after_the_end(tmp_path):
     assert again["steps"] == first["steps"] and again["peak_stress_Pa"] == first["peak_stress_Pa"]
 
 
+@pytest.mark.thorough
 def test_an_end_by_time_takes_the_place_of_one_by_strain(tmp_path):
     ran(tmp_path, "--set", "strain_end=1e-4", "--frames", "0")
     summary = ran(tmp_path, "--set", "strain_end=none", "--set", "t_end=3ms", "--frames", "0", "--resume")

@@ -129,6 +129,7 @@ def test_vtu_files_say_when_they_are_of_at_which_load_and_what_codes_mean(run_fo
     assert all(f"{column.name} [{column.unit}]" in text for column in PARTICLES.columns)
 
 
+@pytest.mark.thorough
 def test_what_is_not_known_is_no_number(run_folder):
     """No opening by the paper's rule, no margin where nothing breaks: NaN, where there was 0 and 1."""
     data = meshio.read(run_folder / "particles_0010.vtu").point_data
@@ -175,6 +176,7 @@ def test_quasi_static_measures_are_small(run_folder):
     assert summary["platen_imbalance"] < 0.01
 
 
+@pytest.mark.thorough
 def test_unstable_run_says_where_and_keeps_what_there_is(tmp_path):
     """A particle is made sick during the run: exit as UnstableRun, with step and place, files written."""
     scene = load_scene("intact", dx=5e-3, strain_end=1e-3)
@@ -201,6 +203,7 @@ def test_module_runs_as_a_command():
     assert "cube" in done.stdout and "flaw_angle" in done.stdout and "Taichi" not in done.stdout
 
 
+@pytest.mark.thorough
 def test_a_flying_fragment_is_sorted_before_it_leaves_its_slabs_reach():
     """One particle in a hundred moves: too few to be sorted for their share, so they must be for their distance."""
     from rsmpm_ti.fields.parallel import REACH
@@ -242,6 +245,7 @@ def test_a_flying_fragment_is_sorted_before_it_leaves_its_slabs_reach():
 
 
 @pytest.mark.parametrize("threads", [1, 2])
+@pytest.mark.thorough("2")
 def test_run_in_which_nothing_fails_knows_no_onset(threads):
     """Several threads take a minimum of times, and made the largest number that there is of one that never comes."""
     scene = load_scene("cube", dx=2e-3, flaw_width=6e-3, time_scale=16.0, strain_end=5e-5)

@@ -71,6 +71,7 @@ def test_the_default_folder_renews_itself_and_keeps_nothing_of_the_run_before(tm
     assert [path.name for path in Path("renders").iterdir()] == ["intact"]
 
 
+@pytest.mark.thorough
 def test_frames_and_particle_files_that_are_lost_are_named_and_the_run_goes_on_without_them(out, capsys):
     before = contents(out)
     (out / "frames" / "stress_0001.png").unlink()
@@ -93,6 +94,7 @@ def test_frames_and_particle_files_that_are_lost_are_named_and_the_run_goes_on_w
     assert left["frames/stress_0001_small.png"] == b"yours"
 
 
+@pytest.mark.thorough
 def test_a_folder_that_is_replaced_during_the_run_is_told_and_left_alone(tmp_path):
     out = tmp_path / "out"
 
@@ -125,6 +127,7 @@ class Wanders:
         pass
 
 
+@pytest.mark.thorough
 def test_the_current_folder_may_change_during_a_run(tmp_path, monkeypatch):
     here, elsewhere = tmp_path / "here", tmp_path / "elsewhere"
     for folder in (here, elsewhere):
@@ -140,6 +143,7 @@ def test_the_current_folder_may_change_during_a_run(tmp_path, monkeypatch):
 
 
 @pytest.mark.parametrize("taken", [False, True])
+@pytest.mark.thorough("False")
 def test_a_run_whose_lock_is_removed_goes_on_unless_another_takes_the_folder(tmp_path, taken):
     out, seen = tmp_path / "out", {}
 

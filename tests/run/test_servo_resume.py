@@ -11,6 +11,7 @@ from rsmpm_ti import SceneError, Servo, load_scene, simulate
 COARSE = {"dx": 2e-3, "flaw_width": 6e-3, "length": 4e-3}
 
 
+@pytest.mark.thorough
 def test_run_with_a_servo_goes_on_to_the_last_bit(tmp_path):
     scene = load_scene("cube_lab", **COARSE)
     loading = replace(scene.loading, servo=Servo(slowest=0.3), local_damping=0.3)

@@ -77,6 +77,7 @@ KINDS = {
 
 
 @pytest.mark.parametrize("kind", KINDS)
+@pytest.mark.thorough("affine", "damped", "jittered", "scaled", "single", "usf", "usl", "viscous")
 def test_column_rests_under_its_weight_when_the_clock_starts(kind):
     """Stops at maxima leave swings of REST^(1/2) = 1e-4 of the stress."""
     changes = dict(KINDS[kind])
@@ -97,6 +98,7 @@ def test_column_rests_under_its_weight_when_the_clock_starts(kind):
     assert result.snapshot.displacement[:, 1] == pytest.approx(sunk, abs=error * np.abs(sunk).max())
 
 
+@pytest.mark.thorough
 def test_what_presses_at_time_0_presses_and_what_has_a_speed_waits():
     """A force from the side at once; platens from above and below start afterwards, with the affine field.
 
@@ -136,6 +138,7 @@ def test_instruments_are_set_to_zero_when_the_clock_starts():
     assert np.abs(result.reactions["b0_wall_y_lower_displacement_m"]).max() == 0.0
 
 
+@pytest.mark.thorough
 def test_a_force_field_waits_at_time_0():
     result = simulate(
         column(loading={"body_force": None, "force_field": Gravity(b=(0.0, -GRAVITY), ramp=1.0)}), threads=1
@@ -143,6 +146,7 @@ def test_a_force_field_waits_at_time_0():
     assert result.history["energy_elastic_J"][0] < 1e-6 * BASE**2 / E
 
 
+@pytest.mark.thorough
 def test_rock_that_fails_on_the_way_is_said_and_booked_at_time_0():
     weak = replace(ROCK, criterion=MohrCoulomb(cohesion=30e3, friction_angle=10.0, tensile_strength=20e3))
     result = simulate(column(rock=weak), threads=1)
@@ -152,6 +156,7 @@ def test_rock_that_fails_on_the_way_is_said_and_booked_at_time_0():
     assert result.history["failed_shear"][0] + result.history["failed_tension"][0] == failed
 
 
+@pytest.mark.thorough
 def test_rock_that_bears_the_load_at_rest_does_not_fail_on_the_way():
     """At its base rho g H presses against nu/(1 - nu) of it: 255 of 307 kPa that it bears. Let go, it sees twice."""
     sound = replace(ROCK, criterion=MohrCoulomb(cohesion=78e3, friction_angle=10.0, tensile_strength=4e5))
@@ -160,6 +165,7 @@ def test_rock_that_bears_the_load_at_rest_does_not_fail_on_the_way():
     assert len(simulate(column(rock=sound, loading={"settle": False}, steps=120), threads=1).events) > 0
 
 
+@pytest.mark.thorough
 def test_a_body_that_nothing_holds_does_not_come_to_rest(tmp_path):
     with pytest.raises(UnstableRun, match=r"did not come to rest in \d+ steps of loading.settle|left the domain"):
         simulate(column(boundaries=SIDES), threads=1, out=tmp_path)
@@ -172,6 +178,7 @@ def test_bodies_that_move_cannot_come_to_rest_first(motion):
         column(body=motion)
 
 
+@pytest.mark.thorough
 def test_it_goes_on_from_a_checkpoint_to_the_same_numbers(tmp_path):
     whole = simulate(column(steps=80), threads=1)
 
@@ -186,6 +193,7 @@ def test_it_goes_on_from_a_checkpoint_to_the_same_numbers(tmp_path):
     assert all(np.array_equal(result.history[n], whole.history[n], equal_nan=True) for n in whole.history.dtype.names)
 
 
+@pytest.mark.thorough
 def test_stopped_meanwhile_it_leaves_no_checkpoint_of_a_start_that_is_none(tmp_path, monkeypatch):
     relax = settling._relax
 

@@ -34,6 +34,7 @@ SCENES = {
 @pytest.mark.parametrize(
     "taichi_real, name", [*(("f64", n) for n in SCENES), ("f32", "paper"), ("f32", "lab")], indirect=["taichi_real"]
 )
+@pytest.mark.thorough("f64-3D", "f64-lab", "f64-uneven")
 def test_arrays_of_a_run_are_those_that_are_expected(taichi_real, name):
     """In both precisions."""
     scene = SCENES[name]()

@@ -9,6 +9,8 @@ import pytest
 
 from rsmpm_ti import load_scene, simulate
 
+pytestmark = pytest.mark.thorough
+
 K = 8.0
 COARSE = {"dx": 2e-3, "flaw_width": 6e-3, "time_scale": K, "schedule.rows": 60}
 

@@ -180,6 +180,17 @@ def test_every_scene_that_ships_has_its_number():
 
 
 @every_scene
+@pytest.mark.thorough(
+    "confined",
+    "cube_lab",
+    "direct_shear",
+    "disc",
+    "disc_lab",
+    "notched_beam",
+    "semicircular_bend",
+    "tunnel",
+    "two_flaws",
+)
 def test_it_runs_to_its_end_and_breaks_rock_with_every_number_finite(coarse_run, name):
     result = coarse_run(name)
     assert result.stopped == "" and result.summary["dropped"] == 0
@@ -204,6 +215,7 @@ def test_it_runs_to_its_end_and_breaks_rock_with_every_number_finite(coarse_run,
 
 
 @every_scene
+@pytest.mark.thorough("confined", "disc_lab", "intact_weibull", "notched_beam", "semicircular_bend", "tunnel")
 def test_its_number_is_what_it_was_and_inside_what_is_known(coarse_run, name):
     number = NUMBERS[name]
     found, (low, high) = number.of(coarse_run(name)), number.bounds

@@ -1,6 +1,7 @@
 """A slope below Culmann's height by far stands; one above it slides."""
 
 import numpy as np
+import pytest
 
 from rsmpm_ti import load_scene, simulate
 
@@ -10,6 +11,7 @@ def way(result) -> float:
     return float(np.linalg.norm(result.snapshot.displacement, axis=1).max())
 
 
+@pytest.mark.thorough
 def test_strong_rock_stands_and_weak_rock_slides(coarse, coarse_run):
     """Of 400 kPa Culmann's height is 290 m. Rock that stands settles by less than rho g H^2/E, H from the floor up."""
     strong = simulate(load_scene("slope", **coarse("slope"), cohesion=400e3), threads=1)

@@ -60,6 +60,7 @@ def test_with_too_few_feet_on_sound_rock_nothing_is_read():
 
 
 @pytest.mark.parametrize("plane_stress", [False, True])
+@pytest.mark.thorough
 def test_lateral_over_axial_strain_of_a_run_is_poissons_ratio(plane_stress):
     """nu in plane stress, nu/(1 - nu) in plane strain, of straining that is uniform from the first step on.
 
@@ -78,6 +79,7 @@ def test_lateral_over_axial_strain_of_a_run_is_poissons_ratio(plane_stress):
         assert (volumetric > 0.0).all(), "compression positive"
 
 
+@pytest.mark.thorough
 def test_without_an_axis_of_the_load_no_strain_is_known():
     scene = load_scene("intact", dx=5e-3, settings={"loading.boundaries": (), "strain_end": None, "t_end": 1e-5,
                                                     "loading.start": "AtRest", "schedule.rows": 3})  # fmt: skip

@@ -77,6 +77,7 @@ SPREAD = (1.0 + 2.0 * LATERAL) / 3.0 * BASE / BULK
 
 
 @pytest.mark.parametrize(("dim", "time_scale"), [(2, 1.0), (2, 5.0), (3, 1.0)])
+@pytest.mark.thorough("2-5.0", "3-1.0")
 def test_column_starts_in_the_equilibrium_of_its_weight(dim, time_scale):
     """On a lattice, by linear functions, the discrete equilibrium is the exact one, whatever the mass scaling."""
     scene = column(dim, body_force=down(dim), initial_stress=in_place(dim), time_scale=time_scale)
@@ -104,6 +105,7 @@ def column_energy(dim: int) -> float:
 
 
 @pytest.mark.parametrize("shape", [QuadraticBSpline(), Linear()], ids=["spline", "linear"])
+@pytest.mark.thorough
 def test_elsewhere_it_moves_as_little_as_a_cell_of_rock_weighs(shape):
     """Jittered, or by splines at a free top, the sums of a cell are not exact: some weight of one cell stays over."""
     seeding = Jittered(amount=0.1, seed=1)
@@ -114,6 +116,7 @@ def test_elsewhere_it_moves_as_little_as_a_cell_of_rock_weighs(shape):
 
 
 @pytest.mark.parametrize("order", ["musl", "usf", "usl"])
+@pytest.mark.thorough("usf", "usl")
 def test_overburden_in_a_box_of_walls_stays_exactly(order):
     shape = QuadraticBSpline() if order == "usl" else Linear()
     result = simulate(
@@ -144,6 +147,7 @@ def test_gravity_is_recorded_and_read_back():
 
 
 @pytest.mark.parametrize("time_scale", [1.0, 3.0])
+@pytest.mark.thorough
 def test_weight_that_comes_slowly_hardly_overshoots(time_scale):
     """A mode of period T swings by R(2 pi ramp/T) of its part, R(a) = 12 |2 sin(a/2) - a cos(a/2)|/a^3, and mode n of a
     column makes 8/(pi n)^2 of the base stress, n = 1, 3, ...; at once the modes double it."""

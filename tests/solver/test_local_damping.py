@@ -41,6 +41,7 @@ def balance(history) -> float:
     return float(np.abs(energies - history["work_J"]).max() / history["work_J"].max())
 
 
+@pytest.mark.thorough
 def test_column_that_is_pressed_at_once_comes_to_the_load_of_statics():
     """Undamped, the wave of the platens goes to and fro for ever."""
     free = simulate(column(0.0, loading_start=AtRest()), threads=1).history
@@ -61,6 +62,7 @@ def test_steady_straining_is_not_damped():
     assert runs[1].summary["local_damping_J"] < 3e-4 * damped["work_J"][-1]
 
 
+@pytest.mark.thorough
 def test_body_that_flies_is_left_alone():
     """Without a force there is nothing to take a fraction of, but for round-off."""
     flying = Body(region=Box(lower=(2e-3, 6e-3), upper=(6e-3, 10e-3)), seeding=Lattice(), velocity=(0.3, 0.2))

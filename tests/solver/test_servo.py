@@ -30,6 +30,7 @@ def test_pace_falls_while_rock_breaks_and_rises_when_it_is_quiet():
     assert servo.next(0.2, 1.0, 0.0, 0.5) > 0.2, "a specimen that holds nothing can give nothing"
 
 
+@pytest.mark.thorough
 def test_rows_are_equal_in_strain_and_time_goes_on():
     scene = slow()
     result = simulate(scene, threads=1)
@@ -75,6 +76,7 @@ def test_scene_whose_peak_depends_on_the_speed_has_a_servo():
     assert load_scene("cube_lab").servo == Servo() and load_scene("cube_lab", quick=True).servo is None
 
 
+@pytest.mark.thorough
 def test_slower_platens_are_a_smaller_time_scale():
     """What the servo rests on: equations of rock hold with t -> 2 t: half the speeds, four times the density."""
     fast = load_scene("cube_lab", **COARSE, time_scale=16.0)
