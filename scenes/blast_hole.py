@@ -26,11 +26,10 @@ from rsmpm_ti import (
     Time,
     lab_rock,
     mm,
-    us,
 )
 
 # a coarser rock: its mean is over two cells at least
-QUICK = {"dx": 1.0 * mm, "length": 2.0 * mm, "width": 80.0 * mm, "t_end": 30.0 * us}
+QUICK = {"dx": 1.0 * mm, "length": 2.0 * mm, "width": 80.0 * mm, "t_end": 30e-6}
 
 
 def pulse(peak: float, rise: float, decay: float) -> tuple[tuple[float, ...], tuple[float, ...]]:
@@ -46,12 +45,12 @@ def scene(
     radius: Length = 5.0 * mm,
     width: Length = 120.0 * mm,  # of the block, as high as wide
     peak: Pressure = 16.0 * MPa,
-    rise: Time = 8.0 * us,
-    decay: Time = 20.0 * us,
+    rise: Time = 8e-6,
+    decay: Time = 20e-6,
     length: Length = 1.0 * mm,
     dx: Length = 0.5 * mm,
     seed: int = 1,
-    t_end: Time = 60.0 * us,
+    t_end: Time = 60e-6,
 ) -> Scene:
     half = 0.5 * width
     block, hole = Box(lower=(-half, -half), upper=(half, half)), Disc(centre=(0.0, 0.0), radius=radius)

@@ -23,7 +23,7 @@ from rsmpm_ti import (
     Wall,
     lab_rock,
     mm,
-    us,
+    ms,
 )
 
 # a coarser rock: its mean is over two cells at least
@@ -36,7 +36,7 @@ def scene(
     width: Length = 120.0 * mm,  # of the block, as high as wide
     vertical_stress: Pressure = 13.0 * MPa,
     K0: float = 0.5,
-    relaxation: Time = 400.0 * us,
+    relaxation: Time = 0.4 * ms,
     length: Length = 2.0 * mm,
     dx: Length = 1.0 * mm,
     seed: int = 1,

@@ -106,6 +106,7 @@ def test_pressed_ring_is_that_of_lame_the_better_the_finer():
     assert fine["radial"] < 0.8 * coarse["radial"] and fine["hoop"] < coarse["hoop"] and fine["hoop"] < 0.015
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize(
     "changes",
     [{"order": "usl"}, {"shape": Linear()}, {"shape": Gimp()}, {"transfer": Apic()}, {"time_scale": 5.0},
