@@ -16,6 +16,7 @@ from rsmpm_ti import (
     Length,
     Loading,
     MPa,
+    Output,
     Pressure,
     Scene,
     Schedule,
@@ -62,4 +63,5 @@ def scene(
             ),
         ),
         schedule=Schedule(t_end=1.3 * relaxation),
+        output=Output(stress_limit=vertical_stress),
     )

