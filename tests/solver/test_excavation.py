@@ -102,7 +102,7 @@ QUICKLY = replace(DIG, relaxation=4.0 * TRANSIT)
 
 
 def test_before_its_time_and_while_the_support_is_whole_nothing_moves():
-    """But for what particles that are fitted to both sides of a curve do to uniform stress: some parts in a thousand."""
+    """But for what particles that are fitted to both sides of a curve do to uniform stress: 0.5 %."""
     late = replace(DIG, time=1.0 * TRANSIT, relaxation=1e6 * TRANSIT)
     for hole in (replace(DIG, time=1.0 * TRANSIT), late):
         snapshot = simulate(ground(half=24e-3, end=0.5 if hole is not late else 1.5, holes=(hole,)), threads=1).snapshot
