@@ -36,6 +36,8 @@ class Nodes:
         self.remap = scene.order == "musl"
         if self.remap:
             self.v_remapped, self.v_moving = ti.Vector.field(grid.dim, real), ti.Vector.field(grid.dim, real)
+        # what boundaries stop is booked where particles carry a velocity alone: see `mpm/nodes.py`
+        self.books_stopping = self.remap and not scene.transfer.affine
         # lightest node that takes a force, as a fraction of a full cell
         self.pushed_mass = PUSHED_MASS if scene.order == "usl" else SMALL_MASS
         axes = (ti.ij, ti.ijk)[grid.dim - 2]

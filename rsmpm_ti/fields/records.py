@@ -2,6 +2,7 @@
 
 import taichi as ti
 
+from rsmpm_ti.spec.loading_start import Affine
 from rsmpm_ti.spec.scene import Scene
 
 NEVER = 1e300
@@ -55,6 +56,14 @@ class Ledger:
         self.viscous, self.released = ti.field(ti.f64, slots), ti.field(ti.f64, slots)
         # by local damping, and by PIC's part of the transfer
         self.damped, self.mixed = ti.field(ti.f64, slots), ti.field(ti.f64, slots)
+        # by boundaries, from what particles bring to nodes that they hold: the sum, and what the next step gives back
+        self.stopped = ti.field(ti.f64, 2)
+        self.begin(scene)
+
+    def begin(self, scene: Scene) -> None:
+        """Speeds before the first step: none, but where bodies start with the field of uniform straining."""
+        for b, boundary in enumerate(scene.loading.boundaries):
+            self.speed[b] = boundary.speed if isinstance(scene.loading.start, Affine) else 0.0
 
 
 SCALARS = (

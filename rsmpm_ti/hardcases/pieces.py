@@ -87,6 +87,7 @@ class Piece:
         ledger = self.sim.ledger
         for field in (ledger.impulse, ledger.work, ledger.latest, ledger.body_work, ledger.viscous, ledger.released):
             field.fill(0.0)
+        ledger.stopped.fill(0.0)
         self.sim.grid.begin()
         self.clock.step, self.clock.dt = 0, cfl * DX / self.sim.wave_speed
         self.drive.survey = survey(self.sim)

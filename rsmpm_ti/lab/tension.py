@@ -24,6 +24,14 @@ DIAMETER, DISC_CELLS, QUICK_DISC_CELLS = 54e-3, 108, 54
 ARC = 10.0
 """Half-angle of the loaded arc [degrees]: the jaws of ISRM (1978) touch 10 degrees at failure."""
 
+
+def tension_in_the_middle(arc: float) -> float:
+    """Tension there over 2 P/(pi D t), of a load over arcs of this half-angle [degrees]: Hondros (1959), Austral.
+    J. Appl. Sci. 10:243; docs/references.md."""
+    angle = math.radians(arc)
+    return math.sin(2.0 * angle) / angle - 1.0
+
+
 ELASTIC = (0.2, 0.8)
 """Fractions of the strength between which a modulus is fitted."""
 
@@ -91,11 +99,14 @@ def read_brazilian(measured: list[Measured]) -> list[Quantity]:
                           ("peak_filtered_Pa", "first_failure_stress_Pa", "first_failure_position_m"))  # fmt: skip
     radius = one.specimen.scene.loading.width / math.pi
     off = math.nan if where is None else math.hypot(where[0] - radius, where[1] - radius) / radius
-    strength = rock.criterion.tensile_strength
+    strength, middle = rock.criterion.tensile_strength, tension_in_the_middle(ARC)
     # at the centre the other principal stress is 3 times as large, pressing: no Griffith correction below 8 sigma_t
     return [
         Quantity(name="BTS", unit="Pa", value=math.nan if peak is None else peak, given=strength,
                  about="2 P/(pi D t) at the peak of the load"),
+        Quantity(name="BTS less the arc's part", unit="Pa", value=math.nan if peak is None else middle * peak,
+                 given=strength, about="tension in the middle at the peak by elasticity (Hondros 1959): the rest is "
+                 "what a crack that costs energy bears beyond it"),
         Quantity(name="BTS at the first failure", unit="Pa", value=math.nan if first is None else first, given=strength,
                  about="the same when the first particle has lost half of its strength"),
         Quantity(name="place of the first failure", unit="1", value=off,

@@ -92,13 +92,54 @@ def node_speed(sim: ti.template(), b: ti.template(), i, factor):
 
 
 @ti.func
-def hold(sim: ti.template(), i, v, factor):
-    """Velocity mapped apart from force, after every boundary that holds the node: as the node was held last."""
+def hold(sim: ti.template(), i, v, factor, before: ti.template()):
+    """Velocity mapped apart from force, after every boundary that holds the node: as the node was held last.
+
+    before: at the boundaries' speeds of the step before.
+    """
     held = v
     for b, boundary in ti.static(enumerate(sim.boundaries)):
         if held_by(sim, boundary, i):
-            held = boundary.keep(held, node_speed(sim, b, i, factor), factor, kept_state(sim, b, i))
+            speed = node_speed(sim, b, i, factor)
+            if ti.static(before):
+                speed += 2.0 * ti.cast(sim.ledger.mean_speed[b] - sim.ledger.speed[b], float)
+            held = boundary.keep(held, speed, factor, kept_state(sim, b, i))
     return held
+
+
+@ti.func
+def may_be_held(sim: ti.template(), i):
+    """Whether node i lies where a boundary acts."""
+    found = False
+    for boundary in ti.static(sim.boundaries):
+        found = found or held_by(sim, boundary, i)
+    return found
+
+
+@ti.func
+def missing(sim: ti.template(), i, v, factor):
+    """Velocity that a node lacks to go as it was held in the step before [m/s], by what it does now."""
+    return hold(sim, i, v, factor, True) - v
+
+
+@ti.func
+def book_stopping(sim: ti.template(), i, v_new, dv, momentum, u, dt, factor):
+    """Energy that boundaries take from a node of musl by stopping what particles bring to it.
+
+    Particles bring v to it before a step and r after it, and gain m dv.(v + r)/2. Stress works on u, which is r as the
+    node is held, boundaries on the mean of u and the u before. What is left, with a = u_before - v and a' = u - r, is
+
+        m dv.(a + a')/2 = m |a + a'|^2/4 + m (dv - a).(a + a')/2 + m (a^2 - a'^2)/4.
+
+    The first is lost, as in an inelastic impact; the second comes of a platen that changes its speed; of the third,
+    m a'^2/4 is given back in the next step. So the sum and that are dissipated. A uniform body force loses nothing.
+    """
+    m = sim.nodes.mass[i]
+    if m > SMALL_MASS * full_cell(sim):
+        a, rest = missing(sim, i, v_new - dv, factor), u - 1.0 / m * momentum
+        lost = 0.5 * m * (dv - dt * ti.Vector(sim.acceleration)).dot(a + rest)
+        sim.ledger.stopped[0] += ti.cast(lost, ti.f64)
+        sim.ledger.stopped[1] += ti.cast(0.25 * m * rest.dot(rest), ti.f64)
 
 
 @ti.func
@@ -107,7 +148,7 @@ def velocity_of(sim: ti.template(), i, momentum, factor):
     m = sim.nodes.mass[i]
     v = ti.Vector.zero(float, sim.dim)
     if m > SMALL_MASS * full_cell(sim):
-        v = hold(sim, i, 1.0 / m * momentum, factor)
+        v = hold(sim, i, 1.0 / m * momentum, factor, False)
     return v
 
 
@@ -160,6 +201,11 @@ def accelerate(sim: ti.template(), i, velocity: ti.template(), dt, factor):
         if m > nodes.pushed_mass * full_cell(sim):
             v += dt * inverse * nodes.f[i]
         v += dt * ti.Vector(sim.acceleration)
+        books, before = False, 0.0 * v
+        if ti.static(nodes.books_stopping):
+            books = may_be_held(sim, i)
+            if books:
+                before = missing(sim, i, v_old, factor)
         for b, boundary in ti.static(enumerate(sim.boundaries)):
             if held_by(sim, boundary, i):
                 held, state = v, 0
@@ -176,6 +222,10 @@ def accelerate(sim: ti.template(), i, velocity: ti.template(), dt, factor):
                 ledger.work[b] += work + impulse[boundary.axis] * (ledger.mean_speed[b] - ledger.speed[b])
                 ledger.latest[b] += work
                 v = held
+        if books:
+            # where a node begins or ends to be held, stress has worked on what it did before
+            change = missing(sim, i, v_old, factor) - before
+            ledger.stopped[0] -= ti.cast(0.5 * dt * nodes.f[i].dot(change), ti.f64)
         dv = v - v_old
     nodes.v[i] = v
     nodes.f[i] = dv
@@ -203,6 +253,8 @@ def new_velocity(
     sim: ti.template(), update: ti.template(), sums: ti.template(), dt: ti.template(), factor: ti.template()
 ):
     """Velocity of all nodes at the step's end, by one of the updates above; `sums`: what lies beside f at walls."""
+    for _ in range(1):
+        sim.ledger.stopped[1] = 0.0
     for b in ti.static(range(len(sim.boundaries))):
         now = ti.cast(speed_of(sim, b, factor), ti.f64)
         sim.ledger.latest[b] = 0.0

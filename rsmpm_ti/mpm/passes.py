@@ -93,6 +93,6 @@ def musl_step(sim: ti.template(), what: ti.template(), dt: float, factor: float,
         sim.grid.move(dt, factor)
     new_velocity(sim, update_node_and_clear, sim.nodes.momentum_columns, dt, factor)
     over_particles(sim, remap_span, what, dt, time, ticket)
-    velocity_after_remap(sim, factor)
+    velocity_after_remap(sim, dt, factor)
     book_remap(sim, dt)
     over_particles(sim, block_by_block, what, dt, time, ticket + 1)

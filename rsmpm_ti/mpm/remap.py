@@ -9,7 +9,7 @@ import taichi as ti
 from rsmpm_ti.fields.stencil import MAX_RUN, coordinates, gather, run_stop, scatter, weights_and_gradients
 from rsmpm_ti.mpm.contact import clear_gaps
 from rsmpm_ti.mpm.g2p import body_work, book_body_work, book_mixing, velocity_to_particle
-from rsmpm_ti.mpm.nodes import clear_node, over_nodes, velocity_of
+from rsmpm_ti.mpm.nodes import book_stopping, clear_node, may_be_held, over_nodes, velocity_of
 from rsmpm_ti.mpm.p2g import add_particle
 from rsmpm_ti.mpm.wall_nodes import extend, fold
 
@@ -45,15 +45,20 @@ def remap_span(sim: ti.template(), start, stop, slot, what: ti.template(), dt, t
 @ti.func
 def remapped_velocity(sim: ti.template(), i, dt, factor):
     nodes = sim.nodes
-    nodes.v_remapped[i] = velocity_of(sim, i, nodes.v_remapped[i], factor)
+    brought = nodes.v_remapped[i]
+    held = velocity_of(sim, i, brought, factor)
+    nodes.v_remapped[i] = held
+    if ti.static(nodes.books_stopping):
+        if may_be_held(sim, i):
+            book_stopping(sim, i, nodes.v[i], nodes.f[i], brought, held, dt, factor)
     nodes.v_moving[i] = nodes.v[i]
     clear_node(sim, i, dt, factor)
 
 
 @ti.func
-def velocity_after_remap(sim: ti.template(), factor: ti.template()):
+def velocity_after_remap(sim: ti.template(), dt: ti.template(), factor: ti.template()):
     """v_remapped becomes velocity, v_moving takes the step's; mass, v and f are cleared for the next step's sums."""
     clear_gaps(sim)
     fold(sim.nodes.v_remapped_columns, sim.grid.walls)
-    over_nodes(sim, remapped_velocity, 0.0, factor)
+    over_nodes(sim, remapped_velocity, dt, factor)
     extend(sim.nodes.v_remapped_columns, sim.grid.walls)

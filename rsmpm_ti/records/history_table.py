@@ -61,8 +61,8 @@ HISTORY = Table(
         Column(
             name="energy_dissipated_J",
             unit="J",
-            about="dissipated since the start by failure, viscosity, local damping and PIC's part of the transfer; "
-            "gone with rock that left or was excavated; absorbed by boundaries",
+            about="dissipated since the start by failure, viscosity, local damping, PIC's part of the transfer and "
+            "impact on boundaries; gone with rock that left or was excavated; absorbed by boundaries",
             value=lambda view: view.survey.dissipated,
         ),
         Column(

@@ -28,7 +28,7 @@ from rsmpm_ti.solver.view import View
 from rsmpm_ti.spec.review.machine import address_space, free_memory
 from rsmpm_ti.spec.scene import Scene
 
-LEDGER = ("impulse", "work", "latest", "speed", "body_work", "viscous", "released", "damped", "mixed")
+LEDGER = ("impulse", "work", "latest", "speed", "body_work", "viscous", "released", "damped", "mixed", "stopped")
 PER_SLOT = ("body_work", "viscous", "released", "damped", "mixed")
 """Those of the ledger that have a slot for each thread: their sum is what counts."""
 

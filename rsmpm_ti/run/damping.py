@@ -25,12 +25,17 @@ def mixing_energy(sim) -> float:
     return float(sim.ledger.mixed.to_numpy().sum(dtype=np.float64))
 
 
-def damping_said(scene, history: np.ndarray, energy_start: float, viscous: float, mixed: float = 0.0) -> list[str]:
+def stopped_energy(sim) -> float:
+    """What boundaries have taken so far in a `Simulation` by stopping what particles bring to their nodes [J]."""
+    return float(sim.ledger.stopped.to_numpy().sum())
+
+
+def damping_said(scene, history: np.ndarray, energy_start: float, viscous: float, booked: float = 0.0) -> list[str]:
     """Sentences about numerical damping and artificial viscosity that took more than DAMPED_FRACTION of the energy that
     was put in: what the run started with, `energy_start` [J], and the most that was done on it.
 
-    history: the rows of a run; viscous, mixed: what the artificial viscosity dissipated and PIC's
-    part of the transfer took, both booked [J].
+    history: the rows of a run; viscous: what the artificial viscosity dissipated; booked: numerical damping that is
+    part of the dissipated energy, by PIC's part of the transfer and by boundaries [J].
     """
     if not len(history):
         return []
@@ -38,7 +43,7 @@ def damping_said(scene, history: np.ndarray, energy_start: float, viscous: float
     most = float(np.max(put_in))
     present = history["energy_kinetic_J"] + history["energy_elastic_J"] + history["energy_dissipated_J"]
     rows = max(1, round(LAST * len(history)))
-    lost = float(np.mean((put_in - present)[-rows:])) + mixed
+    lost = float(np.mean((put_in - present)[-rows:])) + booked
     said: list[str] = []
     if not most > 0.0:  # NaN too, where a run broke down
         return said

@@ -20,7 +20,7 @@ from rsmpm_ti.records.frame_table import FrameTimes
 from rsmpm_ti.records.rows import Rows
 from rsmpm_ti.results.result import Result
 from rsmpm_ti.run.attempts import Attempts
-from rsmpm_ti.run.damping import damped_energy, damping_said, mixing_energy, viscous_energy
+from rsmpm_ti.run.damping import damped_energy, damping_said, mixing_energy, stopped_energy, viscous_energy
 from rsmpm_ti.run.warnings import kinetic_share_after, walls_moved, warnings_of
 
 
@@ -155,7 +155,6 @@ def numbers_of(run, view, fracture: Fracture | None, speed: float, stopped: str,
     beside = [said for said in (writer.warning, writer.problem) if said] if writer is not None else []
     found = warnings_of(run.scene, numbers, view.history, view.events)
     found += walls_moved(run.scene, view.snapshot, run.sim.grid.state()["grid_frame"])
-    damped = damping_said(
-        run.scene, view.history, run.history.energy_start, viscous_energy(run.sim), mixing_energy(run.sim)
-    )
+    booked = mixing_energy(run.sim) + stopped_energy(run.sim)
+    damped = damping_said(run.scene, view.history, run.history.energy_start, viscous_energy(run.sim), booked)
     return numbers | {"warnings": [*run.said, *found, *damped, *beside]}

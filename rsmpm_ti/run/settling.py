@@ -100,9 +100,10 @@ def _count_from_here(drive: Drive) -> None:
     sim = drive.sim
     ledger, events = sim.ledger, sim.events
     sim.grid.count_from_here(ledger.impulse.to_numpy())
-    for field in (ledger.impulse, ledger.work, ledger.latest, ledger.speed, ledger.mean_speed):
+    for field in (ledger.impulse, ledger.work, ledger.latest, ledger.mean_speed):
         field.fill(0.0)
-    for field in (ledger.body_work, ledger.viscous, ledger.released, ledger.damped, ledger.mixed):
+    ledger.begin(sim.scene)
+    for field in (ledger.body_work, ledger.viscous, ledger.released, ledger.damped, ledger.mixed, ledger.stopped):
         field.fill(0.0)
     ledger.body_work[0] = -survey(sim).work  # the confining pressure's, which is a sum over particles
     time = events.time.to_numpy()

@@ -119,6 +119,8 @@ def _survey(sim: ti.template()):
         given = sim.ledger.work[b] + sim.walls.latest * sim.ledger.latest[b]
         sim.report.work[None] -= given
         sim.report.dissipated[None] -= given
+    for k in sim.ledger.stopped:
+        sim.report.dissipated[None] += sim.ledger.stopped[k]
     for slot in sim.ledger.viscous:
         sim.report.work[None] += sim.ledger.body_work[slot]
         sim.report.dissipated[None] += sim.ledger.viscous[slot] + sim.ledger.released[slot]

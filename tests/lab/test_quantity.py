@@ -2,9 +2,11 @@
 
 import math
 
+import numpy as np
 import pytest
 
 from rsmpm_ti.lab.quantity import Quantity, over_seeds
+from rsmpm_ti.lab.tension import tension_in_the_middle
 
 
 def one(value: float, error: float = math.nan) -> Quantity:
@@ -43,3 +45,12 @@ def test_seed_without_a_value_is_left_out():
 )
 def test_numbers_are_shown_in_the_units_of_a_laboratory(quantity, shown):
     assert quantity.shown() == shown
+
+
+def test_tension_in_the_middle_of_a_disc_is_hertzs_for_a_narrow_load_and_hondros_for_an_arc():
+    assert tension_in_the_middle(1e-3) == pytest.approx(1.0, abs=1e-6)
+    assert tension_in_the_middle(90.0) == pytest.approx(-1.0)  # pressed all round: the pressure is P/D, all of it
+    # of many pairs of line loads, each at an angle t: cos(t)^2 of its tension 1, sin(t)^2 of its pressure 3
+    t = np.radians(10.0) * (np.arange(1000) + 0.5) / 1000
+    exact = float(np.mean(np.cos(t) ** 2 - 3.0 * np.sin(t) ** 2))
+    assert tension_in_the_middle(10.0) == pytest.approx(exact, rel=1e-6)

@@ -110,7 +110,8 @@ def test_what_pic_takes_is_booked(order):
     """The account beats as that of pure FLIP does, since velocity and stress are half a step apart, and no more."""
     whole, nothing = account(1.0, order)
     mixed, taken = account(0.99, order)
-    assert nothing == 0.0 and taken > 0.15
+    assert (nothing > 0.0) == (order == "musl"), "walls take something too, where they stop nodes after the step"
+    assert taken - nothing > 0.15
     assert mixed == pytest.approx(whole, abs=0.02)
 
 

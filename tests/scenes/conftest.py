@@ -24,6 +24,7 @@ COARSE = {
     "tunnel": {"dx": 2e-3, "length": 4e-3, "time_scale": 30.0},
     "excavation": {"dx": 2e-3, "length": 4e-3, "width": 96e-3, "vertical_stress": 16e6, "relaxation": 2e-4},
     "blast_hole": {"dx": 1e-3, "length": 2e-3, "width": 60e-3, "t_end": 25e-6},
+    "impact": {"dx": 1e-3, "length": 2e-3},
     "slope": {"dx": 4.0, "length": 8.0, "t_end": 5.0},
 }  # fmt: skip
 """Keywords of a run of some 5 s that breaks rock, with cells as large as the scene's flaw and material length allow."""

@@ -60,6 +60,10 @@ MUTATIONS = {
         ],
         "cracked_cell",
     ),
+    "what boundaries stop booked nowhere": (
+        [("mpm/nodes.py", "sim.ledger.stopped[0] += ti.cast(lost, ti.f64)", "pass")],
+        "cracked_cell",
+    ),
     "usl in place of musl": (
         [
             ("mpm/stepper.py", '"musl": musl,', '"musl": usl,'),

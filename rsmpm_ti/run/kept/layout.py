@@ -40,6 +40,7 @@ def layout(scene: Scene, count: int, settings: Settings) -> dict[str, tuple[np.d
     add(f64, (acting, dim), "ledger_impulse", "history_impulse")
     add(f64, (acting,), "ledger_work", "ledger_latest", "ledger_speed")
     add(f64, (SLOTS,), "ledger_body_work", "ledger_viscous", "ledger_released", "ledger_damped", "ledger_mixed")
+    add(f64, (2,), "ledger_stopped")
     add(f64, (EVENTS,), "event_time")
     add(real, (EVENTS,), "event_sigma_1", "event_sigma_3", "event_released")
     oriented = scene.rock.criterion.breaks and scene.rock.after_failure.oriented
