@@ -44,6 +44,7 @@ from .setups.semicircular import semicircular_test as semicircular_test
 from .setups.uniaxial import uniaxial_test as uniaxial_test
 from .solver.observer import Observer as Observer
 from .solver.view import View as View
+from .spec.boundaries import Absorbing as Absorbing
 from .spec.boundaries import Fixed as Fixed
 from .spec.boundaries import Platen as Platen
 from .spec.boundaries import Wall as Wall
@@ -53,6 +54,8 @@ from .spec.drawings.mesh import Mesh as Mesh
 from .spec.drawings.polygon import Polygon as Polygon
 from .spec.ground.gravity import Gravity as Gravity
 from .spec.ground.in_situ import InSitu as InSitu
+from .spec.holes.excavation import Excavation as Excavation
+from .spec.holes.pressure import HolePressure as HolePressure
 from .spec.library.rocks import load_rock as load_rock
 from .spec.library.rocks import load_sheet as load_sheet
 from .spec.load_cell import Gauge as Gauge

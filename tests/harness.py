@@ -15,6 +15,7 @@ REQUIRED = {
     "PicFlip": {"flip": 0.3},  # neither of its two ends
     "Platen": {"axis": 0, "side": "lower", "position": 0.0, "speed": 1.0},
     "Wall": {"axis": 0, "side": "lower", "position": 0.0},
+    "Absorbing": {"axis": 0, "side": "lower", "position": 0.0},
     "Fixed": {"axis": 0, "side": "lower", "position": 0.0},
 }
 """Example arguments of classes that cannot be built without any, or not well."""

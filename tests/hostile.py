@@ -28,11 +28,13 @@ from rsmpm_ti.rock.elasticity import Hooke
 from rsmpm_ti.spec.domain import Domain
 from rsmpm_ti.spec.ground.gravity import Gravity
 from rsmpm_ti.spec.ground.in_situ import InSitu
+from rsmpm_ti.spec.holes.excavation import Excavation
+from rsmpm_ti.spec.holes.pressure import HolePressure
 from rsmpm_ti.spec.load_cell import Gauge, LoadCell
 from rsmpm_ti.spec.loader import load_scene
 from rsmpm_ti.spec.loading_start import AtRest
 from rsmpm_ti.spec.quasi_static.servo import Servo
-from rsmpm_ti.spec.regions import Box
+from rsmpm_ti.spec.regions import Box, Difference
 from rsmpm_ti.spec.scene import Body, Loading, Scene, Schedule
 from rsmpm_ti.spec.scene_json import from_plain, to_plain
 from rsmpm_ti.units import Unit, quantity
@@ -62,13 +64,16 @@ GIVEN = {
     "position": 0.1, "radius": 0.01, "side": "upper", "speed": -2.5e-3, "time": 2e-3, "title": "a", "width": 6e-3,
     "upper": (0.04, 0.08), "E": 17e9, "density": 2600.0, "cohesion": 6e6, "friction_angle": 40.0, "shape": 6.0,
     "tensile_strength": 2e6, "reference_volume": 1e-5, "G_f_I": 5.0, "G_f_II": 24.0, "tension_limit": 1.0,
-    "compression_limit": 1e9, "times": (1e-3, 2e-3), "factors": (1.0, 0.5),
+    "compression_limit": 1e9, "times": (1e-3, 2e-3), "factors": (1.0, 0.5), "pressures": (1e6, 0.0),
     "parts": (Box(lower=(0.01, 0.02), upper=(0.04, 0.08)),), "region": Box(lower=(0.015, 0.03), upper=(0.035, 0.07)),
     "points": ((0.01, 0.02), (0.04, 0.02), (0.025, 0.08)), "traces": ((0.02, 0.04, 0.03, 0.06, 6e-3),),
     "image": str(DRAWINGS / "section.png"), "mm_per_pixel": 1.0, "greys": (0, 100),
     "file": str(DRAWINGS / "plate.msh"),
 }  # fmt: skip
 """A good value for every field without a default, by its name."""
+
+
+CORNER = Box(lower=(0.0,) * 3, upper=(0.004,) * 3)
 
 
 @functools.cache
@@ -92,7 +97,12 @@ def bases() -> list[Scene]:
         region=Box(lower=(0.0, 0.0, 0.01), upper=(0.01, 0.01, 0.012)), rock=replace(plain.rock, density=2700.0)
     )
     mixed = replace(solid, bodies=(block, above))
-    return [plain, timed, lab, steered, solid, ground, mixed]
+    hole = Box(lower=(0.02, 0.02), upper=(0.03, 0.04))
+    drilled = replace(plain.bodies[0], region=Difference(whole=plain.bodies[0].region, removed=(hole,)))
+    pressed = HolePressure(region=hole, times=(1e-3, 2e-3), pressures=(1e6, 0.0))
+    blasted = replace(timed, bodies=(drilled,), loading=replace(timed.loading, holes=(pressed,)))
+    dug = replace(ground, loading=replace(ground.loading, holes=(Excavation(region=CORNER, time=1e-6),)))
+    return [plain, timed, lab, steered, solid, ground, mixed, blasted, dug]
 
 
 def at(thing, path: list):

@@ -126,7 +126,17 @@ def test_what_settings_make_together_is_still_checked(command):
     assert "set the other to none" in refused(command, "cube", "--set", "t_end=1ms")
 
 
-OTHERS = ("notched_beam", "semicircular_bend", "direct_shear", "tunnel", "impact", "slope", "inclusion")
+OTHERS = (
+    "notched_beam",
+    "semicircular_bend",
+    "direct_shear",
+    "tunnel",
+    "impact",
+    "slope",
+    "blast_hole",
+    "excavation",
+    "inclusion",
+)
 """Scenes that are no compression of a box or a disc."""
 
 
@@ -225,7 +235,7 @@ def test_bad_setting_is_refused_in_one_line_before_anything_compiles(command, se
         ("loading.body_force=3", "2 components"),
         ("bodies.0.velocity=1", "2 components"),
         ("bodies.0.velocity=true,1", "numbers separated by commas"),
-        ("loading.boundaries=1,2", "a list of Platen, Wall or Fixed"),
+        ("loading.boundaries=1,2", "a list of Platen, Wall, Fixed or Absorbing"),
         ("loading.boundaries.0.axis=true", "an integer"),
         ("loading.boundaries.0.span=0.01", "2 numbers"),
         ("bodies.0.seeding=Linear", "Lattice or Jittered"),

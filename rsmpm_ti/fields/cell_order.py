@@ -37,7 +37,7 @@ def sort_particles(sim: Simulation) -> None:
     """
     cell_keys(sim)
     key = sim.particles.key.to_numpy()
-    gone = sim.particles.volume.to_numpy() == 0.0 if sim.drops else np.zeros(len(key), dtype=bool)
+    gone = sim.particles.volume.to_numpy() == 0.0 if sim.loses else np.zeros(len(key), dtype=bool)
     order = np.lexsort((key, gone)).astype(np.int32)
     if not np.array_equal(order, np.arange(len(order))):
         sim.particles.order.from_numpy(order)
@@ -50,6 +50,6 @@ def sort_particles(sim: Simulation) -> None:
 def first_rows(sim: Simulation) -> np.ndarray:
     """Row of cells along the first axis in which each particle was at the last sort, ascending; not of dropped ones."""
     key = sim.particles.key.to_numpy()
-    if sim.drops:
+    if sim.loses:
         key = key[: np.count_nonzero(sim.particles.volume.to_numpy())]
     return key // int(np.prod(sim.grid.nodes[1:]))

@@ -10,6 +10,7 @@ import taichi as ti
 from rsmpm_ti.errors import SceneError
 from rsmpm_ti.fields.contacts import Contacts
 from rsmpm_ti.fields.grid import Grid
+from rsmpm_ti.fields.holes.walls import Walls
 from rsmpm_ti.fields.nodes import Nodes
 from rsmpm_ti.fields.nonlocal_sums import NonlocalSums
 from rsmpm_ti.fields.parallel import traversal
@@ -20,6 +21,7 @@ from rsmpm_ti.rock.tensors import PACKED_LENGTH
 from rsmpm_ti.spec.bodies.rocks import rock_indices
 from rsmpm_ti.spec.confinement import confined_volume_ratio
 from rsmpm_ti.spec.ground.in_situ import start_stress
+from rsmpm_ti.spec.holes.excavation import Excavation
 from rsmpm_ti.spec.loading_start import Affine
 from rsmpm_ti.spec.review.memory import use_sparse_grid
 from rsmpm_ti.spec.scene import Scene
@@ -89,6 +91,7 @@ class Simulation:
         self.scene, self.real, self.dim = scene, real, scene.dim
         self.rock, self.shape, self.transfer = scene.rock, scene.shape, scene.transfer
         self.boundaries = scene.loading.boundaries
+        self.absorbing = tuple(k for k, b in enumerate(self.boundaries) if getattr(b, "absorbs", False))
         self.stencil = offsets(scene.shape, scene.dim)
         self.rows = rows(scene.shape, scene.dim)
         self.size = len(self.stencil)  # nodes of a stencil
@@ -112,6 +115,7 @@ class Simulation:
         self.contacts = Contacts(scene, self.grid, real)
         self.drops = scene.domain.outside == "drop"
         self.outside_is_sick = 0 if self.drops else 1
+        self.loses = self.drops or any(isinstance(hole, Excavation) for hole in scene.loading.holes)
         count = sum(len(body.x) for body in seeds)
         if count >= 2**31:
             raise SceneError(f"{count} particles are more than 2^31 - 1; use a larger dx or fewer particles per axis")
@@ -125,6 +129,7 @@ class Simulation:
             Ledger(scene, self.traversal.count),
         )
         self.report = Report(scene)
+        self.walls = Walls(scene, self.grid, Seeds(begun.x, begun.volume))
         self.several = len(scene.rocks) > 1
         self.views = tuple(copy.copy(self) if self.several else self for _ in scene.rocks)
         for k, view in enumerate(self.views):

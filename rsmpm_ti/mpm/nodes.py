@@ -8,6 +8,7 @@ import taichi as ti
 
 from rsmpm_ti.fields.nodes import SMALL_MASS
 from rsmpm_ti.mpm.contact import clear_gaps, keep_state, kept_state, squeeze, touching
+from rsmpm_ti.mpm.holes.press import book_walls
 from rsmpm_ti.mpm.wall_nodes import extend, fold
 
 
@@ -177,6 +178,14 @@ def as_it_is(v, inverse):
 
 
 @ti.func
+def absorbed(sim: ti.template(), boundary: ti.template(), v, dt):
+    """Velocity of a node of a plane that waves leave by: it holds the mass m = share rho dx A of the rock before it."""
+    cells = dt / (sim.contacts.share * sim.grid.dx)
+    shear_speed = ti.sqrt(sim.rock.elasticity.mu / sim.density)
+    return boundary.absorb(v, cells * sim.wave_speed, cells * shear_speed)
+
+
+@ti.func
 def accelerate(sim: ti.template(), i, velocity: ti.template(), dt, factor):
     """v_i <- v_i + dt (f_i/m_i + b), then boundaries, whose impulses and work go to the ledger.
 
@@ -202,9 +211,13 @@ def accelerate(sim: ti.template(), i, velocity: ti.template(), dt, factor):
                 held, state = v, 0
                 if touching(sim, b, i):
                     held, state = boundary.project(v, node_speed(sim, b, i, factor), factor, squeeze(sim, dt))
+                during = held
+                if ti.static(b in sim.absorbing):
+                    held = absorbed(sim, boundary, v, dt)
+                    during = 0.5 * (held + v_old)
                 keep_state(sim, b, i, state)
                 impulse = ti.cast(m * (held - v), ti.f64)
-                work = impulse.dot(ti.cast(held, ti.f64))
+                work = impulse.dot(ti.cast(during, ti.f64))
                 ledger.impulse[b] += impulse
                 ledger.work[b] += work + impulse[boundary.axis] * (ledger.mean_speed[b] - ledger.speed[b])
                 ledger.latest[b] += work
@@ -252,6 +265,7 @@ def new_velocity(
     over_nodes(sim, update, dt, factor)
     extend(sim.nodes.v_columns, sim.grid.walls)
     extend(sim.nodes.f_columns, sim.grid.walls)
+    book_walls(sim, dt)
 
 
 @ti.kernel

@@ -14,6 +14,7 @@ import taichi as ti
 from rsmpm_ti.fields.parallel import over_particles
 from rsmpm_ti.fields.stencil import coordinates
 from rsmpm_ti.mpm.g2p import new_stress, nodes_to_particles
+from rsmpm_ti.mpm.holes.press import book_remap
 from rsmpm_ti.mpm.nodes import new_velocity, update_node_and_clear
 from rsmpm_ti.mpm.p2g import particles_to_nodes
 from rsmpm_ti.mpm.remap import remap_span, velocity_after_remap
@@ -93,4 +94,5 @@ def musl_step(sim: ti.template(), what: ti.template(), dt: float, factor: float,
     new_velocity(sim, update_node_and_clear, sim.nodes.momentum_columns, dt, factor)
     over_particles(sim, remap_span, what, dt, time, ticket)
     velocity_after_remap(sim, dt, factor)
+    book_remap(sim, dt)
     over_particles(sim, block_by_block, what, dt, time, ticket + 1)

@@ -12,6 +12,7 @@ import taichi as ti
 from rsmpm_ti.fields.state import Simulation
 from rsmpm_ti.fields.stencil import coordinates, gather, weights_and_gradients
 from rsmpm_ti.mpm.g2p import velocity_to_particle
+from rsmpm_ti.mpm.holes.press import press
 from rsmpm_ti.mpm.local_damping import UNDAMPED
 from rsmpm_ti.mpm.nodes import clear_nodes, update_nodes
 from rsmpm_ti.mpm.stepper import LOAD, scatter_all
@@ -43,6 +44,7 @@ def bring_to_rest(sim: Simulation, dt: float, factor: float) -> None:
     impulse = ledger.impulse.to_numpy()  # the step that follows is not taken
     clear_nodes(sim)
     scatter_all(sim, LOAD, 0.0)
+    press(sim, 0.0)
     update_nodes(sim, dt, factor)
     ledger.impulse.from_numpy(impulse)
     _kick(sim, 0.5 if sim.scene.order == "usf" else -0.5)

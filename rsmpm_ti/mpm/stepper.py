@@ -1,6 +1,7 @@
 """Time stepping: musl, usf and usl as lists of passes, and the clock that counts them."""
 
 from rsmpm_ti.fields.state import Simulation
+from rsmpm_ti.mpm.holes.press import press
 from rsmpm_ti.mpm.nodes import clear_nodes, momentum_to_velocity, move_grid, update_moving_nodes, update_nodes
 from rsmpm_ti.mpm.passes import Pass, g2p, musl_step, p2g
 
@@ -37,6 +38,7 @@ def musl(sim: Simulation, dt: float, start: float, factors: list[float]) -> None
     for step, factor in enumerate(factors, 1):
         # after the last step it is for nothing, and cheaper than compiling a pass that does not; but with a nonlocal
         # mean, where every other step may be the last, that is what is compiled
+        press(sim, start + (step - 1) * dt)
         what = MOVE_AND_LOAD if step < len(factors) or not sim.is_nonlocal else MOVE
         musl_step(sim, what, dt, factor, start + step * dt, sim.traversal.ticket(2))
 
@@ -49,6 +51,7 @@ def usf(sim: Simulation, dt: float, start: float, factors: list[float]) -> None:
         scatter_all(sim, MOMENTUM, time - dt)
         momentum_to_velocity(sim, factor)
         gather_all(sim, STRESS_AND_FORCE, dt, time)
+        press(sim, time - dt)
         update_moving_nodes(sim, dt, factor)
         gather_all(sim, VELOCITY_AND_MOVE, dt, time)
         follow(sim, dt, factor)
@@ -59,6 +62,7 @@ def usl(sim: Simulation, dt: float, start: float, factors: list[float]) -> None:
     for step, factor in enumerate(factors, 1):
         clear_nodes(sim)
         scatter_all(sim, LOAD, start + (step - 1) * dt)
+        press(sim, start + (step - 1) * dt)
         update_nodes(sim, dt, factor)
         gather_all(sim, EVERYTHING, dt, start + step * dt)
         follow(sim, dt, factor)

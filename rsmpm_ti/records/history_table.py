@@ -61,12 +61,13 @@ HISTORY = Table(
         Column(
             name="energy_dissipated_J",
             unit="J",
-            about="dissipated since the start by failure, viscosity, local damping, PIC's part of the transfer "
-            "and impact on boundaries",
+            about="dissipated since the start by failure, viscosity, local damping, PIC's part of the transfer and "
+            "impact on boundaries; gone with rock that left or was excavated; absorbed by boundaries",
             value=lambda view: view.survey.dissipated,
         ),
         Column(
-            name="work_J", unit="J", about="work of boundaries, body force and confining pressure since the start",
+            name="work_J", unit="J", about="work of boundaries, body force, confining pressure, pressure in holes and "
+            "supports of what was excavated, since the start",
             value=lambda view: view.survey.work,
         ),
         Column(

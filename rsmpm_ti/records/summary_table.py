@@ -109,6 +109,7 @@ SUMMARY = Table(
         _key("dropped_mass_kg", "kg", "their mass, the rock's own"),
         _key("dropped_momentum_kg_m_s", "kg m/s", "their momentum, mass scaling included"),
         _key("dropped_energy_J", "J", "their kinetic and elastic energy"),
+        _key("excavated", "1", "particles that were excavated"),
         _key("stopped", "", "why the run ended before the end of its schedule; empty where it did not"),
         _key(
             "complete", "", "whether the run came to its end and every file of it is there; false or no file while a "

@@ -71,7 +71,7 @@ def take(drive, history, progress: dict, identity: dict) -> dict[str, np.ndarray
     arrays |= {f"event_{name}": getattr(sim.events, name).to_numpy()[:count] for name in _event_columns(sim)}
     arrays["event_by_mode"] = sim.events.by_mode.to_numpy()
     arrays["event_onset"] = np.array(sim.events.onset[None])
-    arrays |= sim.grid.state() | sim.contacts.state() | history.state()
+    arrays |= sim.grid.state() | sim.contacts.state() | sim.walls.state() | history.state()
     arrays |= {f"dropped_{name}": np.array(value) for name, value in vars(drive.dropped).items()}
     arrays |= {f"clock_{name}": np.array(value) for name, value in drive.clock.state().items()}
     if drive.control is not None:
@@ -99,7 +99,7 @@ def restore(arrays: dict[str, np.ndarray], drive, history) -> dict:
         field.from_numpy(column)
     sim.events.count[None], sim.events.onset[None] = count, float(arrays["event_onset"])
     sim.events.by_mode.from_numpy(arrays["event_by_mode"])
-    for part in (sim.grid, sim.contacts, history):
+    for part in (sim.grid, sim.contacts, sim.walls, history):
         part.resume(arrays)
     planned = drive.clock.total
     drive.clock.resume({name: arrays[f"clock_{name}"] for name in drive.clock.state()})

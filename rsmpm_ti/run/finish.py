@@ -21,7 +21,7 @@ from rsmpm_ti.records.rows import Rows
 from rsmpm_ti.results.result import Result
 from rsmpm_ti.run.attempts import Attempts
 from rsmpm_ti.run.damping import damped_energy, damping_said, mixing_energy, stopped_energy, viscous_energy
-from rsmpm_ti.run.warnings import kinetic_share_after, warnings_of
+from rsmpm_ti.run.warnings import kinetic_share_after, walls_moved, warnings_of
 from rsmpm_ti.solver.readout import read_rocks
 from rsmpm_ti.spec.bodies.rocks import named_rocks
 
@@ -153,11 +153,13 @@ def numbers_of(run, view, fracture: Fracture | None, speed: float, stopped: str,
         "kinetic_share_after": kinetic_share_after(view.history, what_broke["first_failure_time_s"]),
         **(fracture.numbers() if fracture is not None else {}),
         **run.drive.dropped.numbers(),
+        "excavated": run.drive.digging.taken,
         "stopped": stopped,
         "complete": complete,
     }
     beside = [said for said in (writer.warning, writer.problem) if said] if writer is not None else []
     found = warnings_of(run.scene, numbers, view.history, view.events)
+    found += walls_moved(run.scene, view.snapshot, run.sim.grid.state()["grid_frame"])
     booked = mixing_energy(run.sim) + stopped_energy(run.sim)
     damped = damping_said(run.scene, view.history, run.history.energy_start, viscous_energy(run.sim), booked)
     return numbers | {"warnings": [*run.said, *found, *damped, *beside]}

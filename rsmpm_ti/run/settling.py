@@ -44,7 +44,7 @@ def settle(drive: Drive, interrupt: Interrupt) -> bool:
     velocity, begun, factor = _by_id(sim, sim.particles.v), clock.state(), clock.factor
     transit = max(1.0, max(_extent(sim.scene)) / (sim.scene.wave_speed * clock.dt))  # [steps]
     clock.total, clock.factor = math.ceil(MOST_TRANSITS * transit), lambda time: factor(0.0)
-    sim.grid.pace[None] = 0.0
+    sim.grid.pace[None], drive.digging.rests = 0.0, True
     bring_to_rest(sim, clock.dt, factor(0.0))
     _may_break(drive, False)
     rested = _relax(drive, interrupt, transit)
@@ -54,7 +54,7 @@ def settle(drive: Drive, interrupt: Interrupt) -> bool:
         rested = _relax(drive, interrupt, transit)
     clock.factor = factor
     clock.resume(begun)
-    sim.grid.pace[None] = 1.0
+    sim.grid.pace[None], drive.digging.rests = 1.0, False
     sim.particles.v.from_numpy(velocity[sim.particles.id.to_numpy()])
     _count_from_here(drive)
     return rested

@@ -2,8 +2,12 @@
 
 import numpy as np
 
+from rsmpm_ti.fields.geometry import Geometry
 from rsmpm_ti.records.events import EventTable
-from rsmpm_ti.spec.boundaries import Platen
+from rsmpm_ti.records.snapshot import INTACT, Snapshot
+from rsmpm_ti.spec.boundaries import Absorbing, Platen
+from rsmpm_ti.spec.drawings.answers import inside
+from rsmpm_ti.spec.holes.pressure import around, pressures_of
 from rsmpm_ti.spec.loading_start import AtRest
 from rsmpm_ti.spec.regions import Disc
 from rsmpm_ti.spec.scene import Scene
@@ -23,6 +27,9 @@ NEAR_PLATEN = 1.5
 
 SAME_LOAD = 0.005
 """Fraction of the time to first failure within which failures count as first too: half a per cent of a steady load."""
+
+MOST_MOVED = 0.5
+"""Cells by which the wall of a hole may move before it is said: the pressure acts where it was."""
 
 MIDDLE = 1.0 / 3.0
 """Part of a disc's loaded diameter, about its centre, on which a Brazilian test must break: there tension is within a
@@ -104,6 +111,7 @@ def _motion(scene: Scene, numbers: dict, history: np.ndarray) -> str:
     bodies fly or fall it was none before."""
     share = numbers["kinetic_share_after"]
     dynamic = scene.loading.force_field is not None or any(body.velocity or body.spin for body in scene.bodies)
+    dynamic = dynamic or any(isinstance(boundary, Absorbing) for boundary in scene.loading.boundaries)
     if share is None or share <= MAX_KINETIC or dynamic:
         return ""
     over = _kinetic_ratio(history) > MAX_KINETIC
@@ -170,3 +178,20 @@ def _beside_the_middle(scene: Scene, events: EventTable) -> str:
         f"neither its load nor the peak is a strength; for one take rock with a fracture energy (disc_lab) and an "
         f"arc of some 10 degrees"
     )
+
+
+def walls_moved(scene: Scene, snapshot: Snapshot, frame: np.ndarray) -> list[str]:
+    """Holes whose wall of intact rock has moved too far for the pressure to be on it; frame: of the grid, now."""
+    said, geometry = [], Geometry(scene)
+    start = snapshot.x - snapshot.displacement
+    for k, hole in pressures_of(scene):
+        near = np.any([inside(hole.region, start + step) for step in around(scene.dim, scene.domain.dx)], axis=0)
+        near &= snapshot.failure_mode == INTACT
+        moved = geometry.coordinates_at(snapshot.x[near], frame) - geometry.coordinates_at(start[near])
+        most = float(np.linalg.norm(moved, axis=1).max(initial=0.0))
+        if most > MOST_MOVED:
+            said.append(
+                f"the wall of holes[{k}] has moved by {most:.2g} cells: its pressure acts where the wall was at the "
+                f"start, and is right up to {MOST_MOVED:g}; take a larger dx, a lower pressure or an earlier end"
+            )
+    return said

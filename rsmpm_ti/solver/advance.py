@@ -13,6 +13,7 @@ from rsmpm_ti.mpm.nodes import clear_nodes
 from rsmpm_ti.mpm.stepper import LOAD, scatter_all
 from rsmpm_ti.solver.control import Control
 from rsmpm_ti.solver.guard import guard
+from rsmpm_ti.solver.holes.digging import Digging
 from rsmpm_ti.solver.outflow import Dropped, drop
 from rsmpm_ti.solver.survey import survey
 from rsmpm_ti.spec.scene import Scene
@@ -38,6 +39,7 @@ class Drive:
         self.clock = Clock(self.sim)
         self.control = None if scene.servo is None else Control(self.sim, self.clock)
         self.survey = survey(self.sim)
+        self.digging = Digging(self.sim)
         self.dropped = Dropped(count=0, mass=0.0, momentum=np.zeros(scene.dim), energy=0.0)
 
     def look(self) -> None:
@@ -45,6 +47,7 @@ class Drive:
         self.sim.traversal.refresh(first_rows(self.sim))
         self.sim.nodes.forget_empty()
         self.survey = survey(self.sim)
+        self.digging.look()
 
     def advance(self, steps: int) -> None:
         """Take steps, fewer if the scene ends before; if they adapt, as many as the time of so many scene.dt needs.
@@ -80,11 +83,13 @@ class Drive:
 
     def take(self, most: int) -> int:
         """Take steps, at most so many, look at the particles, and sort them if they need it; how many were taken."""
+        while self.digging.due(self.clock.time, self.clock.dt):
+            self.survey = self.digging.dig(self.clock.time)
         # particles against nodes, which go at most as fast as the platens
         speed, way = max(self.survey.speed + self.sim.grid.fastest, 1e-30), SAFE_CELLS * self.sim.grid.dx
         # way = speed t + quickest t^2/2, solved so that no difference of near numbers is taken
         time = 2.0 * way / (speed + math.sqrt(speed**2 + 2.0 * self.sim.grid.quickest * way))
-        chunk = min(most, max(1, math.floor(time / self.clock.dt)))
+        chunk = min(most, max(1, math.floor(time / self.clock.dt)), self.digging.steps(self.clock.time, self.clock.dt))
         self.clock.advance(chunk)
         self.survey = survey(self.sim)
         if self.survey.outside and not self.survey.sick:

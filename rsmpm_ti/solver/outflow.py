@@ -38,22 +38,28 @@ class Dropped:
         }
 
 
+@ti.func
+def lay_aside(sim: ti.template(), p, frame):
+    """Take a particle out of the run."""
+    particles = sim.particles
+    particles.volume[p] = 0.0
+    particles.J[p] = J_at_start(sim, p)
+    for d in ti.static(range(sim.dim)):
+        middle = frame[d, 0] + 0.5 * (sim.grid.nodes[d] - 1) * frame[d, 2]
+        particles.u[p][d] = middle - particles.reference[p][d]
+    for component in ti.static(particles.resting_components):
+        component[p] = 0
+    for mode in ti.static(particles.modes):
+        mode[p] = ti.max(mode[p], 1)  # nothing looks for cracks in it any more
+
+
 @ti.kernel
 def park(sim: ti.template()):
     """Take every particle outside the domain out of the run."""
-    particles = sim.particles
-    for p in particles.key:
+    for p in sim.particles.key:
         frame = sim.grid.frame()
         if left_domain(sim, coordinates(sim, p, frame)):
-            particles.volume[p] = 0.0
-            particles.J[p] = J_at_start(sim, p)
-            for d in ti.static(range(sim.dim)):
-                middle = frame[d, 0] + 0.5 * (sim.grid.nodes[d] - 1) * frame[d, 2]
-                particles.u[p][d] = middle - particles.reference[p][d]
-            for component in ti.static(particles.resting_components):
-                component[p] = 0
-            for mode in ti.static(particles.modes):
-                mode[p] = ti.max(mode[p], 1)  # nothing looks for cracks in it any more
+            lay_aside(sim, p, frame)
 
 
 def drop(sim: Simulation, before: Survey, dropped: Dropped) -> tuple[Survey, Dropped]:

@@ -9,6 +9,7 @@ from rsmpm_ti.failure.of_rock import J_at_start, density_at, energy_and_gap
 from rsmpm_ti.fields.records import SCALARS
 from rsmpm_ti.fields.state import Simulation
 from rsmpm_ti.fields.stencil import coordinates
+from rsmpm_ti.mpm.holes.press import latest_internal_work
 
 FIXED = len(SCALARS) + 2
 """Places in the report before the momentum: the scalars and the two failure counts."""
@@ -33,8 +34,8 @@ class Survey:
     far_strays: int  # those among them that are more than half a cell beyond its row
     momentum: np.ndarray  # [kg m/s], [dim]
     impulse: np.ndarray  # of each boundary on the body since the start [N s], [boundaries, dim]
-    work: float  # of boundaries, body force and confining pressure since the start [J]
-    dissipated: float  # by failure and viscosity since the start [J]
+    work: float  # of boundaries, body force, pressure in holes and confinement since the start [J]
+    dissipated: float  # by failure and viscosity, and absorbed by boundaries, since the start [J]
     failed_tension: int
     failed_shear: int
 
@@ -93,6 +94,8 @@ def _survey(sim: ti.template()):
             report.elastic[None] += ti.cast(particles.volume[p] * stored, ti.f64)
             # the confining pressure's work: p times the volume that the bodies gave way
             report.work[None] += ti.cast(sim.confinement * particles.volume[p] * (J_at_start(sim, p) - J), ti.f64)
+            if ti.static(sim.walls.holes > 0):
+                report.work[None] += sim.walls.ahead * latest_internal_work(sim, p)
             ti.atomic_max(report.speed[None], ti.cast(v.norm(), ti.f64))
             ti.atomic_min(report.J_min[None], ti.cast(J, ti.f64))
             ti.atomic_max(report.J_max[None], ti.cast(J_open, ti.f64))
@@ -109,7 +112,11 @@ def _survey(sim: ti.template()):
     for b in range(sim.report.boundary_count):
         for d in ti.static(range(sim.dim)):
             sim.report.values[FIXED + sim.dim + b * sim.dim + d] = sim.ledger.impulse[b][d]
-        sim.report.work[None] += sim.ledger.work[b] + 0.5 * sim.ledger.latest[b]
+        sim.report.work[None] += sim.ledger.work[b] + sim.walls.latest * sim.ledger.latest[b]
+    for b in ti.static(sim.absorbing):
+        given = sim.ledger.work[b] + sim.walls.latest * sim.ledger.latest[b]
+        sim.report.work[None] -= given
+        sim.report.dissipated[None] -= given
     for k in sim.ledger.stopped:
         sim.report.dissipated[None] += sim.ledger.stopped[k]
     for slot in sim.ledger.viscous:

@@ -22,7 +22,8 @@ from rsmpm_ti.rock.sheet.data_sheet import DataSheet
 from rsmpm_ti.spec.drawings.drawn_file import beside
 from rsmpm_ti.spec.library.places import find, in_place_of
 from rsmpm_ti.spec.library.rocks import ends_early, load_sheet, with_rock
-from rsmpm_ti.spec.scene import Scene, Schedule, unchecked
+from rsmpm_ti.spec.review.unchecked import unchecked
+from rsmpm_ti.spec.scene import Scene, Schedule
 from rsmpm_ti.spec.scene_json import read_scene
 from rsmpm_ti.units import advice, percentage, quantity
 
@@ -116,8 +117,7 @@ def _fields_of(settings: dict[str, object], parameters) -> dict[str, object]:
 
 
 def _takes_none(parameter: inspect.Parameter) -> bool:
-    wanted = _kind_of(parameter)
-    return wanted is types.NoneType or types.NoneType in typing.get_args(wanted)
+    return types.NoneType in members(_kind_of(parameter))
 
 
 @contextlib.contextmanager

@@ -3,9 +3,7 @@
 (`rsmpm_ti.scene` is the command line: it runs as `__main__`, and a dataclass defined there would exist twice.)
 """
 
-import contextlib
 import math
-from contextvars import ContextVar
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import Annotated, Literal
@@ -22,17 +20,20 @@ from rsmpm_ti.rock.heterogeneity import check_scale
 from rsmpm_ti.rock.rock import Rock
 from rsmpm_ti.spec.bodies.rocks import check_each_rock, check_histories, check_rocks, rocks_of
 from rsmpm_ti.spec.bodies.seeds import seeds_of
-from rsmpm_ti.spec.boundaries import Fixed, Platen, Wall
+from rsmpm_ti.spec.boundaries import Absorbing, Fixed, Platen, Wall
 from rsmpm_ti.spec.domain import Domain
 from rsmpm_ti.spec.ground.gravity import ForceField, Gravity, check_gravity
 from rsmpm_ti.spec.ground.in_situ import InSitu, check_initial_stress
 from rsmpm_ti.spec.ground.settling import check_settling
+from rsmpm_ti.spec.holes.excavation import Excavation
+from rsmpm_ti.spec.holes.pressure import HolePressure, check_holes
 from rsmpm_ti.spec.load_cell import LoadCell
 from rsmpm_ti.spec.loading_start import Affine, AtRest, Press, Program, Ramp
 from rsmpm_ti.spec.mass_scaling import MAX_TIME_SCALE, estimate
 from rsmpm_ti.spec.quasi_static.servo import AUTO_DAMPING, Servo, check_quasi_static
 from rsmpm_ti.spec.regions import Region
 from rsmpm_ti.spec.review.plausible import blamed
+from rsmpm_ti.spec.review.unchecked import UNCHECKED
 from rsmpm_ti.spec.scene_checks import check_bodies, check_cracks, check_loading, check_motion, check_stop
 from rsmpm_ti.spec.seeding import Jittered, Lattice, Seeds
 from rsmpm_ti.units import Acceleration, LengthOrArea, Pressure, Spin, Time, Velocity
@@ -66,7 +67,7 @@ class Body:
     spin: Annotated[Spin, Finite] = 0.0
 
 
-Boundary = Platen | Wall | Fixed
+Boundary = Platen | Wall | Fixed | Absorbing
 
 
 @checked("loading")
@@ -89,6 +90,7 @@ class Loading:
     over the force out of balance (see `mpm/local_damping.py`). With time_scale = 'auto', which looks no further than
     the first failure, there are both unless they are given, so that it holds to the end.
     cell: what is measured, and gauges; what it leaves open comes from the platens (see `load_cell.py`).
+    holes: pressures on the walls of holes (`holes/pressure.py`), and rock that is excavated (`holes/excavation.py`).
     """
 
     boundaries: Annotated[
@@ -110,6 +112,7 @@ class Loading:
     settle: bool = False
     servo: Servo | None = None
     local_damping: Annotated[float, Interval(ge=0.0, le=0.8), Remedy("0.8 is what static problems take")] | None = None
+    holes: Annotated[tuple[Annotated[HolePressure | Excavation, ByType], ...], Len(0, MAX_BOUNDARIES)] = ()
 
     @property
     def platens(self) -> tuple[Platen, Platen] | None:
@@ -195,19 +198,6 @@ class Output:
     stress_limit: Annotated[Pressure, Positive] | None = None
 
 
-_UNCHECKED = ContextVar("_UNCHECKED", default=False)
-
-
-@contextlib.contextmanager
-def unchecked():
-    """Within it the parts of a scene are not held to each other: whoever changes more of them builds it again after."""
-    token = _UNCHECKED.set(True)
-    try:
-        yield
-    finally:
-        _UNCHECKED.reset(token)
-
-
 @checked("scene")
 @dataclass(frozen=True, kw_only=True)
 class Scene:
@@ -228,7 +218,7 @@ class Scene:
     output: Output = field(default_factory=Output)
 
     def __post_init__(self):
-        if _UNCHECKED.get():
+        if UNCHECKED.get():
             return
         try:
             self._check()
@@ -247,6 +237,7 @@ class Scene:
         check_initial_stress(self)
         check_gravity(self)
         check_settling(self)
+        check_holes(self)
         check_quasi_static(self)
         check_bodies(self)
         check_loading(self)

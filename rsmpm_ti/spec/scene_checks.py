@@ -12,7 +12,7 @@ from rsmpm_ti.errors import SceneError, refuse, shown
 from rsmpm_ti.method.shape import Gimp
 from rsmpm_ti.method.time_step import MAX_COUNT
 from rsmpm_ti.rock.after_failure import check_law
-from rsmpm_ti.spec.boundaries import Platen
+from rsmpm_ti.spec.boundaries import Absorbing, Platen
 from rsmpm_ti.spec.drawings.answers import inside
 from rsmpm_ti.spec.loading_start import Affine, Press, Program, Ramp
 from rsmpm_ti.spec.mass_scaling import MIN_TRANSITS
@@ -83,6 +83,7 @@ def check_loading(scene) -> None:
             allowed = f"on a plane of grid nodes along axis {boundary.axis}"
             nearest = f"the nearest is {domain.lower[boundary.axis] + round(cells) * domain.dx:.9g} m"
             raise refuse(f"boundaries[{k}].position", boundary.position, allowed, nearest)
+    _check_absorbing(loading)
     _check_turned(scene)
     _check_load_cell(scene)
     if scene.schedule.strain_end is not None or isinstance(loading.start, Affine):
@@ -107,6 +108,16 @@ def check_loading(scene) -> None:
             least = f"at least {MIN_TRANSITS * loading.height / scene.wave_speed:.4g} s, 5 wave transits"
             raise refuse("start.time", loading.start.time, least)
     _check_sides(loading)
+
+
+def _check_absorbing(loading) -> None:
+    """Dashpots bear nothing at rest."""
+    loads = {"initial_stress": loading.initial_stress, "body_force": loading.body_force, "settle": loading.settle}
+    given = next((name for name, value in loads.items() if value), None)
+    for k, boundary in enumerate(loading.boundaries):
+        if isinstance(boundary, Absorbing) and given:
+            remedy = "it carries no load at rest: take a Wall, further away"
+            raise refuse(f"boundaries[{k}]", boundary, f"one that does not absorb beside loading.{given}", remedy)
 
 
 def _check_turned(scene) -> None:

@@ -23,6 +23,8 @@ COARSE = {
     "direct_shear": {"dx": 2e-3, "length": 4e-3},
     "tunnel": {"dx": 2e-3, "length": 4e-3, "time_scale": 30.0},
     "inclusion": {"dx": 1.25e-3, "length": 2.5e-3, "time_scale": 30.0, "strain_end": 7.5e-4},
+    "excavation": {"dx": 2e-3, "length": 4e-3, "width": 96e-3, "vertical_stress": 16e6, "relaxation": 2e-4},
+    "blast_hole": {"dx": 1e-3, "length": 2e-3, "width": 60e-3, "t_end": 25e-6},
     "impact": {"dx": 1e-3, "length": 2e-3},
     "slope": {"dx": 4.0, "length": 8.0, "t_end": 5.0},
 }  # fmt: skip

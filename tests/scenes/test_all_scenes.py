@@ -39,6 +39,15 @@ LATERAL = 0.14 / 0.86  # sigma_h that rock between walls adds to sigma_v
 TUNNEL = (UCS + (0.5 - LATERAL) * 6e6) / (3.0 - LATERAL)
 """Vertical stress at which 3 sigma_v - sigma_h is the strength, of rock that starts at 6 MPa and half of it [Pa]."""
 
+SPALLS = (UCS + math.tan(math.radians(65.0)) ** 2 * 8e6 - 16e6) / (1.5 * 16e6 + math.tan(math.radians(65.0)) ** 2 * 8e6)
+"""Part of the support that is gone when the sides of a hole fail, of rock under 16 MPa and half of it: there the hoop
+stress goes from sigma_v to 3 sigma_v - sigma_h (Kirsch 1898), and the radial one from sigma_h to nothing."""
+
+
+def faded(part: float) -> float:
+    """s at which 3 s^2 - 2 s^3 of a support is gone."""
+    return 0.5 - math.sin(math.asin(1.0 - 2.0 * part) / 3.0)
+
 
 @dataclass(frozen=True, kw_only=True)
 class Number:
@@ -169,6 +178,16 @@ NUMBERS = {
         source="Goodier: mean tension at the poles of an inclusion in an infinite plate; in a strip three times as wide"
         " that of a hole is 1.3 times as large (Howland 1930, Phil. Trans. R. Soc. A 229:49)",
     ),
+    "excavation": Number(
+        name="first_failure_time_s", pinned=1.899e-4, rel=0.03, bounds=(1e-5 + faded(SPALLS) * 2e-4, 2.1e-4),
+        source="Kirsch (1898), while the support fades, from 0.01 to 0.21 ms",
+    ),
+    "blast_hole": Number(
+        name="first_failure_time_s", pinned=7.34e-6, rel=0.03,
+        bounds=(8e-6 * math.asin(math.sqrt(STRENGTH / 16e6)) / (0.5 * math.pi), 8e-6),
+        source="Lame: the hoop stress of a wall at rest is the pressure, 16 MPa sin^2, which a wall in motion reaches"
+        " later, but before the peak it is eight times the strength",
+    ),
     "slope": Number(
         name="first_failure_stress_Pa", pinned=0.674e6, rel=0.03, bounds=(STANDS * SLOPE, SLIDES * SLOPE),
         source="limit analysis: uniaxial strength over rho g H from below, Culmann's plane from above",
@@ -180,8 +199,9 @@ NUMBERS = {
 }  # fmt: skip
 
 ONE_SIDED = ("axial_strain", "lateral_strain", "volumetric_strain", "stress_top_Pa", "force_top_N")
-UNKNOWN = {"impact": ONE_SIDED, "slope": ONE_SIDED}
-"""Columns without a number: nothing presses from above, and sides lose their corners at once."""
+UNLOADED = (*ONE_SIDED, "stress_bottom_Pa", "force_bottom_N")
+UNKNOWN = {"impact": ONE_SIDED, "slope": ONE_SIDED, "excavation": UNLOADED, "blast_hole": UNLOADED}
+"""Columns without a number: nothing presses from above, and sides lose their corners at once; there are no platens."""
 
 QUICKEST = ("cube", "intact", "intact_weibull", "slope", "direct_shear")
 """Scenes that `make test` runs; the others take longer, and `make thorough` runs them."""

@@ -24,7 +24,17 @@ the modulus, so that process zones keep their length."""
 BEYOND = 4.0
 """Times the strain to which a scene ships, in units of the rock's own strain at failure."""
 
-OTHERS = {"notched_beam", "semicircular_bend", "direct_shear", "tunnel", "slope", "impact", "inclusion"}
+OTHERS = {
+    "notched_beam",
+    "semicircular_bend",
+    "direct_shear",
+    "tunnel",
+    "slope",
+    "blast_hole",
+    "excavation",
+    "impact",
+    "inclusion",
+}
 
 RUNS = [(name, rock, 1 + k) for name in sorted({*available()} - OTHERS) for k, rock in enumerate(ROCKS)]
 

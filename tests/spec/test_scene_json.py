@@ -92,7 +92,7 @@ def test_unknown_missing_and_wrong_fields_are_refused_by_place():
         ("bodies.0.region", {"type": "Linear"}, "Box, Disc"),
         ("bodies.0.seeding", {"type": "Linear"}, "Lattice or Jittered"),
         ("rock.criterion", {"type": "Void"}, "MohrCoulomb or Unbreakable"),
-        ("loading.boundaries", [{"type": "Affine"}], "a list of Platen, Wall or Fixed"),
+        ("loading.boundaries", [{"type": "Affine"}], "a list of Platen, Wall, Fixed or Absorbing"),
         ("bodies", {"type": "Affine"}, "a list of Body"),
     ],
 )
@@ -125,7 +125,7 @@ def test_scene_recorded_before_the_move_still_loads(tmp_path):
     recorded["rock"]["averaging"]["length"] = 2e-3
     path.write_text(json.dumps(manifest))
     recorded["loading"] |= {"cell": to_plain(LoadCell()), "initial_stress": None, "settle": False}
-    recorded["loading"] |= {"servo": None, "local_damping": None}
+    recorded["loading"] |= {"servo": None, "local_damping": None, "holes": []}
     recorded["bodies"][0]["rock"] = None
     for platen in recorded["loading"]["boundaries"]:
         platen |= {"pulls": False, "force": None, "stress": None}

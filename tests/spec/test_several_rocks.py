@@ -13,6 +13,7 @@ from rsmpm_ti.rock.elasticity import Hooke
 from rsmpm_ti.rock.nonlocal_mean import Local
 from rsmpm_ti.rock.presets import lab_rock
 from rsmpm_ti.rock.rock import Rock
+from rsmpm_ti.spec.boundaries import Absorbing
 from rsmpm_ti.spec.ground.in_situ import InSitu
 from rsmpm_ti.spec.library.rocks import with_rock
 from rsmpm_ti.spec.loading_start import Affine, AtRest
@@ -114,6 +115,10 @@ GROUND = {"initial_stress": InSitu(axis=1, surface=0.1, K0=0.5), "body_force": (
         (lambda: scene(inner=ODD, rock=lab_rock()), ["bodies[1].rock.after_failure", "'slip'", "rename"]),
         (lambda: scene(inner=same(viscosity=None)), ["rock", "viscosity"]),
         (lambda: scene(inner=3.0), ["body", "rock"]),
+        (
+            lambda: scene(loading_boundaries=(Absorbing(axis=1, side="upper", position=0.1),), schedule={"t_end": 1e-4}),
+            ["loading.boundaries", "bodies[1].rock has other waves"],
+        ),
         (lambda: scene(loading_time_scale="auto"), ["time_scale = 'auto'", "one body"]),
     ],
 )  # fmt: skip

@@ -14,8 +14,9 @@ from rsmpm_ti.spec.scene import Scene
 MOST_TEXT = 32 * 2**20
 """Characters of a checkpoint's text: settings, and what observers remember beside arrays."""
 
-ROWS, EVENTS, SLOTS = "rows", "events", "slots"
-"""Lengths that the scene does not say: of the history, of events, of a ledger with a slot for each thread."""
+ROWS, EVENTS, SLOTS, WALLS = "rows", "events", "slots", "walls"
+"""Lengths that the scene does not say: of the history, of events, of a ledger with a slot for each thread, of nodes at
+the walls of holes."""
 
 OBSERVERS = "observer_"
 """Names of arrays that observers remember begin so."""
@@ -53,6 +54,8 @@ def layout(scene: Scene, count: int, settings: Settings) -> dict[str, tuple[np.d
     for k, plane in enumerate(pushing_planes(scene, geometry)[0]):
         add(real, plane.extent, f"seat_{k}")
         add(i32, plane.extent, f"contact_{k}")
+    if scene.loading.holes:
+        add(f64, (WALLS, dim), "wall_forces")
     columns = len(HISTORY_COLUMNS) + len(scene.loading.cell.gauges) + len(settings.columns)
     add(f64, (ROWS, columns), "history")
     add(f64, (columns,), "history_zero")

@@ -7,6 +7,7 @@ import itertools
 
 from rsmpm_ti.errors import SceneError, refuse
 from rsmpm_ti.rock.rock import Rock
+from rsmpm_ti.spec.boundaries import Absorbing
 from rsmpm_ti.spec.confinement import check_confined_rock
 from rsmpm_ti.spec.loading_start import Affine
 
@@ -75,6 +76,10 @@ def _check_together(scene) -> None:
         if isinstance(loading.start, Affine) and rock.elasticity != scene.rock.elasticity:
             remedy = "rocks of different elasticity do not strain alike; use start = Ramp"
             raise refuse("loading.start", loading.start, f"no Affine where {name} has another elasticity", remedy)
+        absorbing = next((boundary for boundary in loading.boundaries if isinstance(boundary, Absorbing)), None)
+        if absorbing is not None and (rock.elasticity, rock.density) != (scene.rock.elasticity, scene.rock.density):
+            remedy = "it takes the waves of the scene's rock; give all bodies its elasticity and density"
+            raise refuse("loading.boundaries", absorbing, f"none that absorbs where {name} has other waves", remedy)
         if rock.density == scene.rock.density:
             continue
         if loading.confinement > 0.0 and any(boundary.unilateral for boundary in loading.boundaries):

@@ -1,0 +1,1 @@
+"""What the walls of holes add to a step."""

@@ -1,0 +1,1 @@
+"""Rock that is taken out between two steps."""
