@@ -62,6 +62,7 @@ def test_pictures_of_cracks_show_where_rocks_meet(folder):
     assert len(rows) == 2
 
 
+@pytest.mark.thorough
 def test_a_run_that_was_stopped_goes_on_to_the_same_end(folder, tmp_path):
     def stop(progress: Progress) -> None:
         if progress.fraction > 0.6:
@@ -74,6 +75,7 @@ def test_a_run_that_was_stopped_goes_on_to_the_same_end(folder, tmp_path):
         assert (tmp_path / "run" / name).read_bytes() == (folder / name).read_bytes(), name
 
 
+@pytest.mark.thorough
 def test_the_same_rock_given_to_a_body_changes_no_bit():
     one = layers(rocks=(None, None, None), start=Affine())
     given = layers(rocks=(None, replace(LAB), LAB), start=Affine())
@@ -82,6 +84,7 @@ def test_the_same_rock_given_to_a_body_changes_no_bit():
     assert first.history.tobytes() == second.history.tobytes() and "by_rock" not in second.summary
 
 
+@pytest.mark.thorough
 def test_rocks_that_differ_in_nothing_that_acts_run_alike():
     """Code for several rocks, and numbers of one: rock whose strength is never reached is as good as unbreakable."""
     whole = replace(LAB, criterion=Unbreakable())

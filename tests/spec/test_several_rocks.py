@@ -89,6 +89,7 @@ class Counts(AfterFailure):
 BREAKS = MohrCoulomb(cohesion=6e6, friction_angle=40.0, tensile_strength=2e6)
 ODD = Rock(density=2600.0, elasticity=Hooke(E=17e9, nu=0.14), criterion=BREAKS, after_failure=Counts())
 PLATE = Hooke(E=17e9, nu=0.14, plane_stress=True)
+SOON = {"t_end": 1e-4}
 GROUND = {"initial_stress": InSitu(axis=1, surface=0.1, K0=0.5), "body_force": (0.0, -9.81), "boundaries": ()}
 
 
@@ -116,7 +117,7 @@ GROUND = {"initial_stress": InSitu(axis=1, surface=0.1, K0=0.5), "body_force": (
         (lambda: scene(inner=same(viscosity=None)), ["rock", "viscosity"]),
         (lambda: scene(inner=3.0), ["body", "rock"]),
         (
-            lambda: scene(loading_boundaries=(Absorbing(axis=1, side="upper", position=0.1),), schedule={"t_end": 1e-4}),
+            lambda: scene(loading_boundaries=(Absorbing(axis=1, side="upper", position=0.1),), schedule=SOON),
             ["loading.boundaries", "bodies[1].rock has other waves"],
         ),
         (lambda: scene(loading_time_scale="auto"), ["time_scale = 'auto'", "one body"]),
