@@ -8,6 +8,8 @@ import warnings
 from dataclasses import replace
 from pathlib import Path
 
+import numpy as np
+
 from rsmpm_ti.errors import RockWarning, SceneError, refuse, shown
 from rsmpm_ti.lab.catalogue import TESTS
 from rsmpm_ti.lab.drawing import Drawing
@@ -28,8 +30,8 @@ def parser() -> argparse.ArgumentParser:
     )
     p.add_argument("test", nargs="?", metavar="TEST", help=f"one of {', '.join(TESTS)}")
     p.add_argument("--rock", default="paper_rock", metavar="FILE|NAME", help="a rock's data sheet, or one of the shelf")
-    p.add_argument("--size", metavar="L", help="width of the specimen, diameter of a disc, depth of a beam (54mm)")
-    p.add_argument("--dx", metavar="L", help="edge of a cell (0.5mm)")
+    p.add_argument("--size", metavar="L", help="width of a specimen, diameter of a disc, depth of a beam, such as 54mm")
+    p.add_argument("--dx", metavar="L", help="edge of a cell, such as 0.5mm")
     p.add_argument(
         "--confinement", metavar="P,...", help="of a triaxial set, or normal stresses of shear: 0,5MPa,10MPa"
     )
@@ -124,9 +126,11 @@ def describe(specimens: list[Specimen]) -> str:
     lines = []
     for one in specimens:
         scene = one.scene
+        low, high = (np.array(bound) for bound in scene.bodies[0].region.bounds())
+        size = " x ".join(f"{1e3 * edge:.4g}" for edge in high - low)
         count = sum(len(body.x) for body in scene.particles())
         lines.append(
-            f"{one.label:<18} {one.about}: {count} particles, dx = {1e3 * scene.domain.dx:.4g} mm, "
+            f"{one.label:<18} {one.about}: {size} mm, {count} particles, dx = {1e3 * scene.domain.dx:.4g} mm, "
             f"{scene.steps} steps, time_scale {scene.time_scale:.3g}"
         )
     return "\n".join(lines)
@@ -158,11 +162,15 @@ def main(arguments: list[str] | None = None) -> int:
 def run(test, sheet, asked: Options, specimens, out: Path, options, arguments: list[str]) -> int:
     from rsmpm_ti.lab.record import report_of, set_aside, write_records
     from rsmpm_ti.lab.report.page import write_page
-    from rsmpm_ti.lab.running import read_back, run_all
+    from rsmpm_ti.lab.running import of_another, read_back, run_all
 
     cores = os.cpu_count() or 1
     every = [one for seed in specimens for one in seed]
     jobs = min(options.jobs or cores, len(every))
+    others = of_another(every, out / "runs") if options.resume else []
+    if others:
+        allowed = f"left out: {others[0]} is a run of another rock, size or drawing"
+        raise refuse("--resume", True, allowed, "take another --out, or --overwrite")
     out.mkdir(parents=True, exist_ok=True)
     set_aside(out)
     problems = []
@@ -189,7 +197,8 @@ def run(test, sheet, asked: Options, specimens, out: Path, options, arguments: l
 def command_of(arguments: list[str]) -> str:
     import shlex
 
-    return " ".join(["python -m rsmpm_ti.lab", *map(shlex.quote, arguments)])
+    again = [word for word in arguments if word not in ("--resume", "--overwrite")]
+    return " ".join(["python -m rsmpm_ti.lab", *map(shlex.quote, again)])
 
 
 def table(report: dict) -> str:

@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 
 from rsmpm_ti.lab.curve import curve_of
-from rsmpm_ti.lab.drawing import cells_of
+from rsmpm_ti.lab.drawing import cells_of, check_connected
 from rsmpm_ti.lab.quantity import Quantity
 from rsmpm_ti.lab.standard import LabTest, Measured, Options, Specimen
 from rsmpm_ti.records.history_table import nominal_stress
@@ -65,10 +65,12 @@ def _specimen(sheet: DataSheet, options: Options, seed: int, pressure: float) ->
 
     if drawing is None:
         return compressed(seeding=Jittered(amount=UNEVEN, seed=seed), time_scale="auto")
-    return compressed(
+    scene = compressed(
         seeding=Jittered(seed=seed, fitted=True), outline=outline, flaws=flaws,
         time_scale=max(1.0, DRAWN * compressed(time_scale="auto").time_scale), servo=Servo(),
     )  # fmt: skip
+    check_connected(drawing.file, scene)
+    return scene
 
 
 def _name(options: Options) -> str:
@@ -112,7 +114,8 @@ def final_strain(scene: Scene) -> float:
 
 def plan_ucs(sheet: DataSheet, options: Options, seed: int) -> list[Specimen]:
     scene = _specimen(sheet, options, seed, 0.0)
-    of = "" if options.drawing is None else f" of {_name(options)}"
+    drawn = options.drawing is not None
+    of = f" of {_name(options)}, stress over a width of {1e3 * scene.loading.width:.4g} mm" if drawn else ""
     return [Specimen(label=f"ucs_seed{seed}", about=f"uniaxial compression{of}, seed {seed}", scene=scene)]
 
 

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import numpy as np
 
-from rsmpm_ti.errors import refuse
+from rsmpm_ti.errors import SceneError, refuse
 from rsmpm_ti.spec.drawings.mask import Mask
 from rsmpm_ti.spec.drawings.mesh import Mesh
 from rsmpm_ti.spec.regions import Segments
@@ -45,21 +45,41 @@ class Drawing:
 
     def flaws(self, dx: float) -> tuple[Segments, ...]:
         """What is cut out, for cells of dx [m]."""
-        return (Segments.from_csv(self.file, width=CELLS_WIDE * dx, scale=self.scale, rounded=True),)
+        try:
+            return (Segments.from_csv(self.file, width=CELLS_WIDE * dx, scale=self.scale, rounded=True),)
+        except SceneError as error:
+            if "slit." not in str(error):
+                raise
+            raise SceneError(f"{error}; one unit of the file is {1e3 * self.scale:g} mm: give its --scale") from None
 
     def outline(self) -> tuple[Mask | Mesh, float, float]:
         """The specimen with its lower left corner at the origin, its width and its height [m]."""
 
+        file = str(Path(self.file).resolve())  # so that the record of the run finds it from any folder
+
         def at(x: float, y: float):
             if self.kind in IMAGES:
-                return Mask(image=self.file, mm_per_pixel=1e3 * self.scale, greys=DARK, origin=(x, y))
-            return Mesh(file=self.file, scale=self.scale, origin=None if x == y == 0.0 else (x, y))
+                return Mask(image=file, mm_per_pixel=1e3 * self.scale, greys=DARK, origin=(x, y))
+            return Mesh(file=file, scale=self.scale, origin=None if x == y == 0.0 else (x, y))
 
         low, high = (np.asarray(bound) for bound in at(0.0, 0.0).bounds())
         if len(low) != 2:
             raise refuse("--drawing", self.file, "flat: a mesh in the x-y plane")
         size = high - low
         return at(*(-low).tolist()), float(size[0]), float(size[1])
+
+
+def check_connected(file: str, scene) -> None:
+    """Refuse a drawing of which no piece reaches from platen to platen."""
+    from scipy.ndimage import label
+
+    x, dx = np.concatenate([body.x for body in scene.particles()]), scene.domain.dx
+    cell = np.floor((x - x.min(axis=0)) / dx).astype(int)
+    rock = np.zeros(cell.max(axis=0) + 1, dtype=bool)
+    rock[tuple(cell.T)] = True
+    pieces, _ = label(rock, structure=np.ones((3, 3)))
+    if not set(pieces[:, 0]) & set(pieces[:, -1]) - {0}:
+        raise refuse("--drawing", file, "one piece of rock from the lower platen to the upper")
 
 
 def cells_of(width: float, height: float, dx: float) -> tuple[float, float]:

@@ -45,6 +45,12 @@ def is_done(specimen: Specimen, folder: Path) -> bool:
         return False
 
 
+def of_another(specimens: list[Specimen], out: Path) -> list[str]:
+    """Folders among those of the specimens that hold a complete run of another scene."""
+    folders = (out / one.label for one in specimens if not is_done(one, out / one.label))
+    return [str(folder) for folder in folders if summary_of(folder).get("complete")]
+
+
 def run_all(specimens: list[Specimen], out: Path, *, jobs: int, threads: int, resume: bool) -> Iterator[Done]:
     """Every specimen as it comes to its end. resume: what is complete is kept.
 

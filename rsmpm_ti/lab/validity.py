@@ -8,6 +8,7 @@ import numpy as np
 from rsmpm_ti.lab.bending import NOTCH, characteristic_length, energy_of, work_of_fracture
 from rsmpm_ti.lab.compression import final_strain
 from rsmpm_ti.lab.standard import Measured
+from rsmpm_ti.spec.regions import slits_of
 
 MAX_KINETIC, MAX_ENERGY, CELLS_IN_ZONE, MAX_SCALE_ERROR = 0.05, 0.01, 4.0, 0.98
 """Kinetic over stored energy up to the peak; energy that is not accounted for, over the work; cells in the process
@@ -28,7 +29,19 @@ class Doubt:
 
 def doubts_of(test: str, one: Measured) -> list[Doubt]:
     """All of one specimen, the grave ones first."""
-    checks = (_no_peak, _peak_at_end, _off_centre, _at_platen, _moving, _energy, _coarse, _parted, _shallow, _load_left)
+    checks = (
+        _no_peak,
+        _peak_at_end,
+        _off_centre,
+        _at_platen,
+        _moving,
+        _energy,
+        _coarse,
+        _smeared,
+        _parted,
+        _shallow,
+        _load_left,
+    )
     found = [doubt for check in checks if (doubt := check(test, one)) is not None]
     return sorted(found, key=lambda doubt: not doubt.grave)
 
@@ -99,6 +112,17 @@ def _coarse(test: str, one: Measured) -> Doubt | None:
         return None
     return _doubt(one, False, f"the process zone, E' G_f/(2 sigma_t^2), is {cells:.2g} cells: below {CELLS_IN_ZONE:g} "
                               f"cracks follow the cells; take a smaller --dx")  # fmt: skip
+
+
+def _smeared(test: str, one: Measured) -> Doubt | None:
+    """A drawn flaw whose ends are rounder to the mean stress than they are drawn."""
+    scene = one.specimen.scene
+    widths = [slit.width for body in scene.bodies for slit in slits_of(body.region)]
+    mean = scene.rock.nonlocal_mean
+    if test not in ("ucs", "triaxial") or not widths or not mean.acts or mean.length <= 0.5 * min(widths):
+        return None
+    said = f"the mean stress that decides is over {1e3 * mean.length:.3g} mm, a flaw {1e3 * min(widths):.3g} mm wide"
+    return _doubt(one, False, f"{said}: its ends crack too late, and the load falls at once; take a smaller --dx")
 
 
 def _shallow(test: str, one: Measured) -> Doubt | None:

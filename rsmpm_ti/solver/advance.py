@@ -94,7 +94,7 @@ class Drive:
         self.survey = survey(self.sim)
         if self.survey.outside and not self.survey.sick:
             self.survey, self.dropped = drop(self.sim, self.survey, self.dropped)
-            if self.dropped.count == self.sim.particles.count:
+            if self.dropped.count + self.digging.taken >= self.sim.particles.count:
                 raise UnstableRun("every particle has left the domain; enlarge it, or end the run earlier")
         guard(self.sim, self.clock, self.survey)
         # slabs bear a stray of one row: half a cell beyond it and SAFE_CELLS more is still less than that

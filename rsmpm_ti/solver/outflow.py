@@ -66,7 +66,7 @@ def drop(sim: Simulation, before: Survey, dropped: Dropped) -> tuple[Survey, Dro
     """Take out what `before`, a survey of the particles as they are, found outside; the survey afterwards, and the sum.
 
     Its energy counts as dissipated, so that kinetic + elastic + dissipated - work goes on as if it had stayed. Where
-    nothing is left the sums are whole too; `Dropped.count` tells.
+    nothing is left the sums are whole too.
     """
     volume = sim.particles.volume.to_numpy()
     park(sim)
@@ -81,7 +81,7 @@ def drop(sim: Simulation, before: Survey, dropped: Dropped) -> tuple[Survey, Dro
         count=dropped.count + int(gone.sum()),
         mass=dropped.mass + sum(masses),
     )
-    if dropped.count < sim.particles.count:
+    if sim.particles.volume.to_numpy().any():
         sort_particles(sim)
     after = survey(sim)
     # the confining pressure's work is a sum over particles too

@@ -14,6 +14,7 @@ from rsmpm_ti.method.time_step import MAX_COUNT
 from rsmpm_ti.rock.after_failure import check_law
 from rsmpm_ti.spec.boundaries import Absorbing, Platen
 from rsmpm_ti.spec.drawings.answers import inside
+from rsmpm_ti.spec.ground.gravity import Gravity
 from rsmpm_ti.spec.loading_start import Affine, Press, Program, Ramp
 from rsmpm_ti.spec.mass_scaling import MIN_TRANSITS
 
@@ -113,6 +114,7 @@ def check_loading(scene) -> None:
 def _check_absorbing(loading) -> None:
     """Dashpots bear nothing at rest."""
     loads = {"initial_stress": loading.initial_stress, "body_force": loading.body_force, "settle": loading.settle}
+    loads["force_field"] = isinstance(loading.force_field, Gravity)
     given = next((name for name, value in loads.items() if value), None)
     for k, boundary in enumerate(loading.boundaries):
         if isinstance(boundary, Absorbing) and given:

@@ -1,16 +1,20 @@
 """A drawn specimen is the one that is tested: in its place, of its size, with its flaws; what cannot be is refused."""
 
+import json
 import math
 
 import numpy as np
 import pytest
 from hostile import DRAWINGS
+from PIL import Image
 
 from rsmpm_ti.lab.__main__ import main
 from rsmpm_ti.lab.compression import plan_triaxial, plan_ucs
 from rsmpm_ti.lab.drawing import Drawing
+from rsmpm_ti.lab.running import is_done
 from rsmpm_ti.lab.standard import Options
 from rsmpm_ti.spec.library.rocks import load_sheet
+from rsmpm_ti.spec.scene_json import from_plain, to_plain
 
 SIZES = {
     "section.png": (40e-3, 80e-3),
@@ -79,3 +83,51 @@ def test_what_cannot_be_drawn_is_refused_in_a_line(arguments, words, capsys, mon
     assert main([*arguments, "--check"]) == 2
     said = capsys.readouterr().err.splitlines()
     assert len(said) == 1 and words in said[0]
+
+
+def saved(tmp_path, solid: np.ndarray):
+    """Drawing of an image of 1 mm pixels."""
+    file = tmp_path / "drawn.png"
+    Image.fromarray(np.where(solid, 0, 255).astype(np.uint8)).save(file)
+    return ["ucs", "--quick", "--check", "--drawing", str(file)]
+
+
+def test_rock_in_two_pieces_from_platen_to_platen_is_refused(tmp_path, capsys):
+    solid = np.ones((80, 40), dtype=bool)
+    assert main(saved(tmp_path, solid)) == 0
+    assert "40 x 80 mm" in capsys.readouterr().out
+    solid[30:50] = False
+    assert main(saved(tmp_path, solid)) == 2
+    assert "one piece of rock" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize(
+    ("text", "words"),
+    [
+        ("15,30,28,4S\n22,60,35,72\n", "line 1"),
+        ("x1,y1,x2,y2\n", "holds no trace"),
+        ("0.015,0.035,0.035,0.065\n", "one unit of the file is 1 mm: give its --scale"),
+    ],
+)
+def test_traces_that_cannot_be_read_are_refused(text, words, tmp_path, capsys):
+    (tmp_path / "traces.csv").write_text(text)
+    assert main(["ucs", "--quick", "--check", "--drawing", str(tmp_path / "traces.csv")]) == 2
+    assert words in capsys.readouterr().err
+
+
+def test_record_of_a_drawn_specimen_finds_its_drawing_from_any_folder(sheet, monkeypatch, tmp_path):
+    monkeypatch.chdir(DRAWINGS)
+    (one,) = plan_ucs(sheet, Options(quick=True, drawing=Drawing(file="section.png")), 1)
+    monkeypatch.chdir(tmp_path)
+    assert from_plain(json.loads(json.dumps(to_plain(one.scene)))) == one.scene
+
+
+def test_a_test_of_another_rock_does_not_go_on_in_its_folder(sheet, tmp_path, capsys):
+    (one,) = plan_ucs(load_sheet("berea_sandstone"), Options(quick=True), 1)
+    folder = tmp_path / "out" / "runs" / one.label
+    folder.mkdir(parents=True)
+    (folder / "scene.json").write_text(json.dumps({"scene": to_plain(one.scene)}))
+    (folder / "summary.json").write_text(json.dumps({"complete": True}))
+    assert main(["ucs", "--quick", "--out", str(tmp_path / "out"), "--resume"]) == 2
+    assert "--resume" in capsys.readouterr().err
+    assert is_done(one, folder)

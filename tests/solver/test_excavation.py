@@ -8,9 +8,11 @@ import pytest
 from rsmpm_ti import (
     Body,
     Box,
+    Difference,
     Disc,
     Domain,
     Excavation,
+    HolePressure,
     Hooke,
     InSitu,
     Jittered,
@@ -18,6 +20,7 @@ from rsmpm_ti import (
     Loading,
     NoViscosity,
     Output,
+    Platen,
     Rock,
     Scene,
     SceneError,
@@ -105,8 +108,48 @@ def test_before_its_time_and_while_the_support_is_whole_nothing_moves():
     """But for what particles that are fitted to both sides of a curve do to uniform stress: 0.5 %."""
     late = replace(DIG, time=1.0 * TRANSIT, relaxation=1e6 * TRANSIT)
     for hole in (replace(DIG, time=1.0 * TRANSIT), late):
-        snapshot = simulate(ground(half=24e-3, end=0.5 if hole is not late else 1.5, holes=(hole,)), threads=1).snapshot
+        snapshot = simulate(
+            ground(half=24e-3, end=1.01 if hole is not late else 1.5, holes=(hole,)), threads=1
+        ).snapshot
         assert np.abs(snapshot.velocity).max() < 0.01 * VERTICAL / (DENSITY * ROCK.wave_speed())
+
+
+@pytest.mark.parametrize("times", [(0.2, 0.2), (0.2, 0.6)])
+def test_a_support_beside_another_bears_what_that_does_not(times):
+    """Else both bear what presses on their common nodes, and the rock flies at V/(rho c)."""
+    left, right = (Box(lower=(low, 8e-3), upper=(low + 4.8e-3, 16e-3)) for low in (8e-3, 12.8e-3))
+    pair = zip((left, right), times, strict=True)
+    holes = tuple(Excavation(region=box, time=time * TRANSIT, relaxation=1e6 * TRANSIT) for box, time in pair)
+    snapshot = simulate(ground(half=24e-3, end=1.5, K0=1.0, seeding=Lattice(), holes=holes), threads=1).snapshot
+    assert np.abs(snapshot.velocity).max() < 1e-4 * VERTICAL / (DENSITY * ROCK.wave_speed())
+
+
+BESIDE = Box(lower=(8e-3, 8e-3), upper=(12.8e-3, 12.8e-3))
+PRESSED = Platen(axis=1, side="upper", position=24e-3, stress=VERTICAL)
+
+
+@pytest.mark.parametrize(
+    "holes, boundaries, words",
+    [
+        ((replace(DIG, time=100.0 * TRANSIT),), None, ["holes[0].time", "before the end of the run"]),
+        ((HolePressure(region=BESIDE, times=(0.0,), pressures=(1e6,)),
+          replace(DIG, region=Box(lower=(14.4e-3, 8e-3), upper=(19.2e-3, 16e-3)))), None,
+         ["holes[1].region", "more than two cells from that of holes[0]"]),
+        ((replace(DIG, region=Box(lower=(8e-3, 16e-3), upper=(16e-3, 24e-3))),), PRESSED, ["a platen that a force moves"]),
+    ],
+)  # fmt: skip
+def test_what_would_lose_its_balance_is_refused(holes, boundaries, words):
+    scene = ground(**SMALL, holes=holes)
+    if any(isinstance(hole, HolePressure) for hole in holes):
+        (body,) = scene.bodies
+        cut = replace(body, region=Difference(whole=body.region, removed=(BESIDE,)))
+        scene = replace(scene, bodies=(cut,))
+    if boundaries is not None:
+        loading = replace(scene.loading, boundaries=(*scene.loading.boundaries[:3], boundaries), width=24e-3)
+        scene = replace(scene, loading=loading)
+    with pytest.raises(SceneError) as caught:
+        scene.particles()
+    assert [word for word in words if word not in str(caught.value)] == []
 
 
 def test_without_a_relaxation_the_wall_shakes_and_the_books_still_close():

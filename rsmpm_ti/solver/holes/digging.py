@@ -7,6 +7,7 @@ import taichi as ti
 
 from rsmpm_ti.fields.cell_order import sort_particles
 from rsmpm_ti.fields.state import Simulation
+from rsmpm_ti.mpm.holes.press import press
 from rsmpm_ti.mpm.nodes import clear_nodes
 from rsmpm_ti.mpm.stepper import LOAD, scatter_all
 from rsmpm_ti.solver.outflow import lay_aside
@@ -24,10 +25,17 @@ def _take_out(sim: ti.template(), gone: ti.types.ndarray()):
 
 @ti.kernel
 def _support(sim: ti.template(), first: int, last: int):
-    """Against what the rock that is left puts on the nodes of one hole, its weight included."""
+    """Against what the rock that is left and other holes put on the nodes of one hole, the rock's weight included; on
+    the grid as it was at the start, as `_press` of mpm/holes takes it."""
     for k in range(first, last):
         i = sim.walls.node[k]
-        sim.walls.q[k] = -ti.cast(sim.nodes.f[i] + sim.nodes.mass[i] * ti.Vector(sim.acceleration), ti.f64)
+        frame = sim.grid.frame()
+        volume = ti.cast(sim.grid.dx, ti.f64)
+        for d in ti.static(range(sim.dim)):
+            volume *= frame[d, 2] / sim.grid.dx
+        force = -ti.cast(sim.nodes.f[i] + sim.nodes.mass[i] * ti.Vector(sim.acceleration), ti.f64)
+        for d in ti.static(range(sim.dim)):
+            sim.walls.q[k][d] = force[d] / (volume * frame[d, 1])
 
 
 class Digging:
@@ -74,6 +82,7 @@ class Digging:
         if hole.relaxation > 0.0:
             clear_nodes(sim)
             scatter_all(sim, LOAD, time)
+            press(sim, time)
             _support(sim, first, last)
         self.taken += int(gone.sum())
         after = survey(sim)

@@ -38,14 +38,24 @@ def read_traces(file: str | os.PathLike, scale: float) -> tuple[tuple[float, ...
         try:
             numbers = tuple(float(cell) * scale for cell in row)
         except ValueError:
-            if not rows and line == 1:
+            if not rows and line == 1 and not any(map(_is_number, row)):
                 continue
             raise SceneError(f"{Path(name).name} line {line}: {shown(row)} are no numbers x1, y1, x2, y2") from None
         if len(numbers) not in (4, 5):
             wanted = "it must hold x1, y1, x2, y2 and perhaps a width"
             raise SceneError(f"{Path(name).name} line {line} has {len(numbers)} numbers: {wanted}")
         rows.append(numbers)
+    if not rows:
+        raise SceneError(f"{name} holds no trace: a row each of x1, y1, x2, y2 and perhaps a width")
     return tuple(rows)
+
+
+def _is_number(cell: str) -> bool:
+    try:
+        float(cell)
+    except ValueError:
+        return False
+    return True
 
 
 def _cells(text: str):

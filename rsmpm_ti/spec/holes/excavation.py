@@ -19,7 +19,7 @@ from annotated_types import Interval
 from rsmpm_ti.checks import MAX_SIZE, checked
 from rsmpm_ti.errors import refuse
 from rsmpm_ti.spec.drawings.answers import inside
-from rsmpm_ti.spec.holes.pressure import Moment
+from rsmpm_ti.spec.holes.pressure import Moment, around, pressures_of
 from rsmpm_ti.spec.regions import Difference, Region
 from rsmpm_ti.spec.seeding import Seeds
 from rsmpm_ti.units import Time
@@ -84,7 +84,8 @@ def marks(scene) -> np.ndarray:
 
 
 def check_excavations(scene, seeds: list[Seeds]) -> None:
-    """Refuse an excavation of nothing, of everything, and two in one place."""
+    """Refuse an excavation of nothing, of everything, two in one place, of a wall that is pressed by a hole or by a
+    platen that a force moves, and one that comes after the end."""
     found = excavations_of(scene)
     if not found:
         return
@@ -93,14 +94,31 @@ def check_excavations(scene, seeds: list[Seeds]) -> None:
         if not np.any(mark == k):
             remedy = "there is no rock to take out"
             raise refuse(f"holes[{k}].region", hole.region, "a region of a body, larger than a particle", remedy)
+        if hole.time >= scene.t_end:
+            raise refuse(f"holes[{k}].time", hole.time, f"before the end of the run, {scene.t_end:.4g} s")
+        for boundary in scene.loading.boundaries:
+            if getattr(boundary, "held", False) and _touches(hole.region, boundary, scene.domain.dx):
+                remedy = "give it a speed: its force would be left without the rock that bore it"
+                raise refuse(f"holes[{k}].region", hole.region, "apart from a platen that a force moves", remedy)
     if not np.any(mark == -1):
-        raise refuse("loading.holes", len(found), "such that some rock is left")
+        raise refuse("loading.holes", scene.loading.holes, "such that some rock is left")
     x = np.concatenate([body.x for body in seeds])
     for (j, _), (k, hole) in itertools.permutations(found, 2):
         both = inside(hole.region, x[mark == j]).mean()
         if both > SHARED:
             allowed = f"apart from holes[{j}]: {100.0 * both:.3g} % of its rock lies in both"
             raise refuse(f"holes[{k}].region", hole.region, allowed)
+    steps = np.concatenate([around(scene.dim, cells * scene.domain.dx) for cells in (0.5, 1.0, 1.5, 2.0)])
+    for (k, hole), (j, pressed) in itertools.product(found, pressures_of(scene)):
+        if any(inside(pressed.region, x[mark == k] + step).any() for step in steps):
+            remedy = "its wall would go and the pressure on it stay"
+            raise refuse(f"holes[{k}].region", hole.region, f"more than two cells from that of holes[{j}]", remedy)
+
+
+def _touches(region, platen, dx: float) -> bool:
+    """Whether a region reaches to within a cell of a platen."""
+    low, high = (float(bound[platen.axis]) for bound in region.bounds())
+    return high > platen.position - dx if platen.side == "upper" else low < platen.position + dx
 
 
 SHARED = 0.05

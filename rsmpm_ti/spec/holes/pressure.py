@@ -37,6 +37,8 @@ class HolePressure:
     Linear between them, after the last the last, before the first from 0 at time 0: a constant one is `times=(0.0,)`.
     `region` is what was cut from the body, or a part of it; what lies outside of the domain does not count.
 
+    Beside a confining pressure it is what the hole holds beyond that, which acts on every surface.
+
     It acts where the wall was at the start, and goes with platens as the grid does. It does not follow into cracks,
     which stay dry, nor out of the region. When it fails: where the wall moves by more than half a cell, which is said,
     or is less than two cells across. Good values: a hole of ten cells or more, fitted seeding.
