@@ -135,7 +135,8 @@ PRESSED = Platen(axis=1, side="upper", position=24e-3, stress=VERTICAL)
         ((HolePressure(region=BESIDE, times=(0.0,), pressures=(1e6,)),
           replace(DIG, region=Box(lower=(14.4e-3, 8e-3), upper=(19.2e-3, 16e-3)))), None,
          ["holes[1].region", "more than two cells from that of holes[0]"]),
-        ((replace(DIG, region=Box(lower=(8e-3, 16e-3), upper=(16e-3, 24e-3))),), PRESSED, ["a platen that a force moves"]),
+        ((replace(DIG, region=Box(lower=(8e-3, 16e-3), upper=(16e-3, 24e-3))),), PRESSED,
+         ["a platen that a force moves"]),
     ],
 )  # fmt: skip
 def test_what_would_lose_its_balance_is_refused(holes, boundaries, words):
@@ -204,7 +205,7 @@ def test_it_is_recorded_and_read_back():
         ((replace(DIG, region=Disc(centre=(1.0, 1.0), radius=RADIUS)),), "a region in the domain"),
         ((replace(DIG, region=Disc(centre=(5e-3, 5e-3), radius=1e-7)),), "larger than a particle"),
         ((replace(DIG, region=Box(lower=(-1e-3, -1e-3), upper=(0.1, 0.1))),), "some rock is left"),
-        ((DIG, replace(DIG, time=1.0)), "apart from holes"),
+        ((DIG, replace(DIG, time=TRANSIT)), "apart from holes"),
     ],
 )
 def test_excavation_that_cannot_be_is_refused_before_anything_compiles(holes, named):
