@@ -228,12 +228,14 @@ def test_page_of_laws_builds_its_rock(folder):
 
 
 def test_page_of_scenes_runs_and_writes_one(folder):
-    run, scene_file, several = blocks("docs/scenes.md")
+    run, scene_file, *holes, several = blocks("docs/scenes.md")
     left = run_block(folder, run.replace('out="renders/cube30", ', "").replace(", overwrite=True", ""))
     assert left["result"].fracture.cracks
     (folder / "mine.py").write_text(scene_file, encoding="utf-8")
     shipped = load_scene("intact")
     assert load_scene("mine.py") == shipped
+    left = run_block(folder, "\n".join(holes))
+    assert all(len(left[name].particles()[0].x) for name in ("pressed", "staged"))
     assert len(run_block(folder, several)["scene"].rocks) == 2
 
 
