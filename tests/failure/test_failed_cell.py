@@ -63,6 +63,7 @@ PAIRS += [(CompressionOnly(), shape) for shape in (Gimp(), QuadraticBSpline())]
 
 
 @pytest.mark.parametrize(("law", "shape"), PAIRS, ids=lambda part: type(part).__name__)
+@pytest.mark.thorough("CompressionOnly-Gimp")
 def test_failed_cell_follows_its_pressure_law_closing_opening_and_closing_again(taichi_f64, law, shape):
     from rsmpm_ti.fields.cell_order import sort_particles
     from rsmpm_ti.fields.state import Simulation

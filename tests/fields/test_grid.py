@@ -106,6 +106,7 @@ def test_a_3d_block_has_youngs_modulus(shape):
     assert result.summary["apparent_modulus_Pa"] == pytest.approx(17e9, rel=tolerance)
 
 
+@pytest.mark.thorough
 def test_a_3d_block_fails_in_shear_at_its_strength():
     """Mohr-Coulomb: UCS = 2 c cos(phi)/(1 - sin(phi)) = 25.52 MPa."""
     result = simulate(block_3d(Linear(), strain_end=1.55e-3, rows=200))

@@ -53,7 +53,7 @@ def column(dim: int = 2, steps: int = 8000, cells: int = 6, **changes) -> Scene:
 
 @pytest.mark.parametrize("order", ORDERS)
 @pytest.mark.parametrize(("dim", "time_scale", "threads"), [(2, 1.0, 1), (2, 3.0, 1), (2, 1.0, 2), (3, 1.0, 1)])
-@pytest.mark.thorough("3-1.0-1-musl", "3-1.0-1-usl")
+@pytest.mark.thorough("3-1.0-1-musl", "3-1.0-1-usl", "3-1.0-1-usf", "2-1.0-2-usf")
 def test_weight_of_a_column_let_go_does_twice_the_work_that_is_stored_at_rest(order, dim, time_scale, threads):
     """Virtual work, W = f.u and U = f.u/2, whatever density it fell with; and W is the weight times its way down."""
     scene = column(dim, order=order)

@@ -26,6 +26,7 @@ def bits(result) -> dict[str, bytes]:
 
 
 @pytest.mark.parametrize("name", ["cube", pytest.param("cube_lab", marks=pytest.mark.validation)])
+@pytest.mark.thorough("cube")
 def test_threads_do_not_show(name):
     scene = load_scene(name, **SMALL[name])
     found = [simulate(scene, threads=threads, deterministic=True) for threads in (1, 3)]

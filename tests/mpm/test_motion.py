@@ -92,7 +92,7 @@ def test_force_field_depends_on_time_and_place_and_its_work_is_booked(order):
     assert result.history["work_J"][-1] == pytest.approx(energy, rel=1e-3)
 
 
-@pytest.mark.thorough("Single")
+@pytest.mark.thorough("Single", "Slabs")
 def test_mass_scaling_leaves_the_weight_of_a_body_unchanged():
     """k times the time scale: k^2 the mass, so k^-2 the acceleration, and after k times the time the same fall."""
     fall = []

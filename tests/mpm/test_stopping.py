@@ -63,6 +63,7 @@ def books(scene: Scene, velocity=(0.0, 0.0)) -> tuple[np.ndarray, np.ndarray, fl
     ],
     ids=str,
 )
+@pytest.mark.thorough("(0.0, -1.0)-{'flip': 0.99}-0.04-0.003", "(0.0, -1.0)-{'pulls': True}-0.04-0.01")
 def test_energy_is_kept_done_or_booked_where_a_bar_hits_a_platen(velocity, parts, least, most_missing):
     """A mean over waves that beat by 1.7 %, since energies are half a step apart.
 
@@ -74,6 +75,7 @@ def test_energy_is_kept_done_or_booked_where_a_bar_hits_a_platen(velocity, parts
     assert np.diff(lost).min() > -1e-4
 
 
+@pytest.mark.thorough
 def test_what_is_missing_is_of_first_order_in_the_step():
     """At its largest: the power of stress over half a step."""
     coarse = bar((0.0, -1.0))

@@ -117,6 +117,7 @@ def test_momentum_of_a_free_body_changes_by_its_weight_alone_to_round_off(simula
 # fraction of a cell by which particles lie outside the wall, as beside a platen that pulls
 @pytest.mark.parametrize("beyond", [0.0, 0.05])
 @pytest.mark.parametrize("shape", variants(Scene, "shape"), ids=name_of)
+@pytest.mark.thorough("Single-Gimp-0.0")
 def test_apic_keeps_an_affine_velocity_field_exactly(simulations, shape, beyond):
     """Also beside a frictionless wall, where this field has no normal velocity."""
     if beyond and shape.width == 2:

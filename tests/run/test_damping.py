@@ -84,6 +84,10 @@ def test_work_that_is_given_back_is_still_what_was_put_in():
     ],
     ids=str,
 )
+@pytest.mark.thorough(
+    "{'viscosity': BulkViscosity(c1=1.5, c2=0.5)}-artificial viscosity took",
+    "{'transfer': PicFlip(flip=0.5)}-PicFlip with flip = 0.5 (1 does not damp)",
+)
 def test_ringing_bar(parts, cause):
     """Forty cells to a wave: without damping its energy stays, to (kh)^2/24 = 0.1 %."""
     lines = said_of(bar(**parts))

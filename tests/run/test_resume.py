@@ -223,7 +223,7 @@ def strain_of(checkpoint) -> float:
 
 
 @pytest.mark.parametrize("adaptive", ["false", "true"])
-@pytest.mark.thorough("true")
+@pytest.mark.thorough("true", "false")
 def test_a_run_that_is_done_goes_on_to_a_later_end_as_if_it_had_been_asked_for(tmp_path, adaptive):
     """With other rows and other output too: the same steps, but where they are cut to end in time (adaptive ones)."""
     steps = ("--set", f"schedule.adaptive={adaptive}")
@@ -248,6 +248,7 @@ def test_a_run_that_is_done_goes_on_to_a_later_end_as_if_it_had_been_asked_for(t
     assert json.loads((tmp_path / "a" / "scene.json").read_text())["scene"]["schedule"]["strain_end"] == 2e-4
 
 
+@pytest.mark.thorough
 def test_output_may_be_asked_for_after_the_end(tmp_path):
     first = ran(tmp_path, "--set", "strain_end=1e-4", "--frames", "0", "--set", "output.vtu=0")
     assert names(tmp_path, "frames/*") == names(tmp_path, "*.vtu") == []

@@ -64,6 +64,7 @@ ENERGY = P**2 / (DENSITY * SPEED) * WIDTH * RISE * 3.0 / 8.0
 
 
 @pytest.mark.parametrize("parts", [{}, {"transfer": Apic()}, {"shape": Linear()}], ids=repr)
+@pytest.mark.thorough("{'transfer': Apic()}")
 def test_plane_wave_brings_its_energy_and_leaves_with_it(parts):
     """A dashpot of the wave's own impedance takes all of it; a grid of 30 cells to the wave leaves 1e-3."""
     history = simulate(bar(END, **parts), threads=1).history
@@ -149,6 +150,7 @@ def off(dx: float) -> tuple[float, float, float]:
     return float(np.sqrt(np.mean(error**2)) / most), float(error.max() / most), float(np.abs(u[ahead]).max() / most)
 
 
+@pytest.mark.thorough
 def test_wave_of_a_cavity_is_that_of_one_radial_coordinate():
     """Second order: the grid delays short waves by (k dx)^2. It arrives when the P wave does."""
     (coarse, _, _), (fine, most, ahead) = off(2.0 * DX), off(DX)

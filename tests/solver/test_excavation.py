@@ -104,6 +104,7 @@ SMALL = {"half": 24e-3, "end": 6.0}
 QUICKLY = replace(DIG, relaxation=4.0 * TRANSIT)
 
 
+@pytest.mark.thorough
 def test_before_its_time_and_while_the_support_is_whole_nothing_moves():
     """But for what particles that are fitted to both sides of a curve do to uniform stress: 0.5 %."""
     late = replace(DIG, time=1.0 * TRANSIT, relaxation=1e6 * TRANSIT)
@@ -163,16 +164,16 @@ def test_without_a_relaxation_the_wall_shakes_and_the_books_still_close():
     assert books.max() < 1e-3 * moving and books.min() > -0.25 * moving
 
 
-@pytest.mark.thorough("usl")
 @pytest.mark.parametrize("order", ["usf", "usl"])
+@pytest.mark.thorough("usl", "usf")
 def test_other_orders_let_the_wall_come_in_as_far(order):
     scene = ground(**SMALL, holes=(QUICKLY,))
     ends = [simulate(replace(scene, order=each), threads=1).snapshot.displacement for each in ("musl", order)]
     assert np.abs(ends[1] - ends[0]).max() < 0.05 * np.abs(ends[0]).max()
 
 
-@pytest.mark.thorough("0.02")
 @pytest.mark.parametrize("fraction", [0.02, 0.4])
+@pytest.mark.thorough("0.02", "0.4")
 def test_run_goes_on_across_an_excavation_to_the_same_bits(tmp_path, fraction):
     """Stopped before it, and while its support fades."""
     scene = ground(**SMALL, holes=(QUICKLY,))

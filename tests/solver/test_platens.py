@@ -98,6 +98,7 @@ def test_a_table_loads_holds_and_unloads():
     assert [program.factor(t) for t in (0.0, 0.25, 1.0, 1.7, 3.0, 4.0, 9.0)] == [0.0, 0.25, 1.0, 1.0, 0.25, -0.5, -0.5]
 
 
+@pytest.mark.thorough
 def test_platens_on_two_axes_strain_uniformly():
     """Equal squeeze of both: sigma = (lambda + mu) 2 ln(1 - strain), in plane strain, the same in every particle."""
     strain, speed = 0.01, 0.2
@@ -194,6 +195,7 @@ def test_platens_that_would_meet_are_refused_with_the_time():
     block(pair(speed=-10.0, pulls=True), Schedule(t_end=2e-3), start=apart)  # close in by 2.5 %, then go apart
 
 
+@pytest.mark.thorough
 def test_a_platen_from_afar_meets_rock_where_it_is_though_its_grid_has_shrunk():
     """Twelve cells of gap beside ten of rock: the grid is half as fine again when it arrives."""
     gap, speed = 12.0 * DX, 20.0

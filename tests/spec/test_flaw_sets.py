@@ -107,7 +107,7 @@ def test_table_of_traces_is_read(tmp_path):
     table.write_text("x1,y1,x2,y2,width\n# mapped by hand\n8,10,20,16,\n\n30,30,30,44,4\n12,45,4,50\n")
     assert Segments.from_csv(table, width=3e-3, scale=1e-3).traces == tuple(map(pytest.approx, TRACES))
     for text, words in (
-        ("1,2,3\n", "line 1 has 3 numbers"), ("1,2,3,4\n1,2,x,4\n", "line 2"), ("", "1 to 1000"),
+        ("1,2,3\n", "line 1 has 3 numbers"), ("1,2,3,4\n1,2,x,4\n", "line 2"), ("", "holds no trace"),
         ("1,2,nan,4\n", "segments.traces"),
     ):  # fmt: skip
         table.write_text(text)

@@ -13,6 +13,7 @@ from rsmpm_ti import (
     Difference,
     Directional,
     GPa,
+    HolePressure,
     Hooke,
     LinearSoftening,
     MohrCoulomb,
@@ -153,6 +154,7 @@ def test_confining_pressure_in_megapascals():
 
 CLIPPED = Clipped(tension_limit=0.5, compression_limit=100e6)
 HELD = Platen(axis=1, side="upper", position=0.1, stress=20.0)
+FLUID = HolePressure(region=Box(lower=(0.02, 0.04), upper=(0.03, 0.06)), times=(0.0, 1e-3), pressures=(0.0, 20.0))
 PRESSURES = {
     ("Hooke", "E"): lambda: specimen(paper(E=17.0)),
     ("MohrCoulomb", "cohesion"): lambda: specimen(paper(cohesion=14.63, tensile_strength=2.0)),
@@ -165,6 +167,7 @@ PRESSURES = {
         paper(), initial_stress=InSitu(axis=1, surface=0.1, overburden=3.0, K0=0.5), start=AtRest()
     ),
     ("Platen", "stress"): lambda: held(HELD),
+    ("HolePressure", "pressures"): lambda: specimen(paper(), holes=(FLUID,)),
     ("Loading", "confinement"): lambda: specimen(paper(), confinement=2.0),
     ("Output", "stress_limit"): lambda: replace(specimen(paper()), output=Output(stress_limit=3.0)),
 }

@@ -33,7 +33,7 @@ QUICK = [
 
 
 @pytest.mark.parametrize("name", QUICK)
-@pytest.mark.thorough("cycle", "first_failure", "gravity", "lab_bending", "lab_ucs", "spin", "vibration")
+@pytest.mark.thorough("cycle", "first_failure", "gravity", "lab_bending", "lab_ucs", "spin", "vibration", "laminate")
 def test_case_agrees_with_its_reference(name, tmp_path):
     rows = run_case("rsmpm_ti.verify.catalogue", name, full=False, out=tmp_path, threads=1)
     assert rows and [row for row in rows if not row.passed] == []

@@ -20,7 +20,10 @@ QUANTITIES = {
         "crack initiation stress": "Pa", "first loss of strength": "Pa", "crack damage stress": "Pa",
         "axial strain at the peak": "1", **BROKEN,
     },
-    "brazilian": {"BTS": "Pa", "BTS at the first failure": "Pa", "place of the first failure": "1", **BROKEN},
+    "brazilian": {
+        "BTS": "Pa", "BTS less the arc's part": "Pa", "BTS at the first failure": "Pa",
+        "place of the first failure": "1", **BROKEN,
+    },
     "tension": {"tensile strength": "Pa", "E in tension": "Pa", **BROKEN},
     "triaxial": ENVELOPE,
     "shear": ENVELOPE,

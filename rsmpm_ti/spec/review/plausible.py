@@ -125,15 +125,16 @@ def blamed(error: SceneError, scene) -> SceneError:
 
 
 def _numbers(path: str, thing):
-    """(dotted path, class, field, value) of every number of a dataclass, however deep, those in tuples included."""
+    """(dotted path, class, field, value) of every number of a dataclass, however deep; of a table its largest."""
     for field in dataclasses.fields(thing):
         value, place = getattr(thing, field.name), f"{path}.{field.name}"
-        entries = enumerate(value) if isinstance(value, tuple) else ()
+        entries = tuple(enumerate(value)) if isinstance(value, tuple) else ()
         for deeper, inner in ((place, value), *((f"{place}.{k}", entry) for k, entry in entries)):
             if dataclasses.is_dataclass(inner):
                 yield from _numbers(deeper, inner)
-        if type(value) in (int, float):
-            yield place, type(thing), field.name, float(value)
+        table = bool(entries) and all(type(entry) in (int, float) for _, entry in entries)
+        if type(value) in (int, float) or table:
+            yield place, type(thing), field.name, float(max(value, key=abs) if table else value)
 
 
 def _is_pressure(kind: type, name: str) -> bool:
