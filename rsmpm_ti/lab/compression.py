@@ -116,14 +116,16 @@ def plan_ucs(sheet: DataSheet, options: Options, seed: int) -> list[Specimen]:
     scene = _specimen(sheet, options, seed, 0.0)
     drawn = options.drawing is not None
     of = f" of {_name(options)}, stress over a width of {1e3 * scene.loading.width:.4g} mm" if drawn else ""
-    return [Specimen(label=f"ucs_seed{seed}", about=f"uniaxial compression{of}, seed {seed}", scene=scene)]
+    return [Specimen(label=f"ucs_seed{seed}", about=f"uniaxial compression{of}, seed {seed}", scene=scene,
+                     facts={"drawn": 1.0} if drawn else {})]  # fmt: skip
 
 
 def read_ucs(measured: list[Measured]) -> list[Quantity]:
     (one,) = measured
     rock = one.specimen.scene.rock
     curve, summary = _curve(one), one.summary
-    initiation = summary["onset_stress_Pa"]
+    initiation, drawn = summary["onset_stress_Pa"], "drawn" in one.specimen.facts
+    within = "not defined of a drawn specimen: its flaws and sides strain on their own" if drawn else ""
     return [
         Quantity(name="UCS", unit="Pa", value=strength_of(one), given=rock.criterion.ucs,
                  about="peak of the axial stress, filtered over a quarter of a wave transit"),
@@ -137,12 +139,12 @@ def read_ucs(measured: list[Measured]) -> list[Quantity]:
                  about="of the slopes of lateral and axial strain between 20 and 80 % of the peak"),
         Quantity(name="crack closure stress", unit="Pa", value=math.nan,
                  about="not defined: the model's rock has no open cracks to close"),
-        Quantity(name="crack initiation stress", unit="Pa", value=curve.initiation(),
-                 about="from which crack volumetric strain exceeds a per cent of the elastic one at the peak"),
+        Quantity(name="crack initiation stress", unit="Pa", value=math.nan if drawn else curve.initiation(),
+                 about=within or "from which crack volumetric strain exceeds a per cent of the elastic at the peak"),
         Quantity(name="first loss of strength", unit="Pa", value=math.nan if initiation is None else initiation,
                  about="axial stress at which the first particle begins to soften, as acoustic emission would hear it"),
-        Quantity(name="crack damage stress", unit="Pa", value=curve.damage(),
-                 about="at which the volumetric strain turns round"),
+        Quantity(name="crack damage stress", unit="Pa", value=math.nan if drawn else curve.damage(),
+                 about=within or "at which the volumetric strain turns round"),
         Quantity(name="axial strain at the peak", unit="1", value=float(curve.axial[-1]), given=peak_strain(rock, 0.0),
                  about="platen displacement over height; plane strain"),
         *breakage(one),

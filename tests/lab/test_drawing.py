@@ -7,9 +7,10 @@ import numpy as np
 import pytest
 from hostile import DRAWINGS
 from PIL import Image
+from reported import run_of
 
 from rsmpm_ti.lab.__main__ import main
-from rsmpm_ti.lab.compression import plan_triaxial, plan_ucs
+from rsmpm_ti.lab.compression import plan_triaxial, plan_ucs, read_ucs
 from rsmpm_ti.lab.drawing import Drawing
 from rsmpm_ti.lab.running import is_done
 from rsmpm_ti.lab.standard import Options
@@ -131,3 +132,15 @@ def test_a_test_of_another_rock_does_not_go_on_in_its_folder(sheet, tmp_path, ca
     assert main(["ucs", "--quick", "--out", str(tmp_path / "out"), "--resume"]) == 2
     assert "--resume" in capsys.readouterr().err
     assert is_done(one, folder)
+
+
+def test_crack_stresses_are_of_intact_specimens_alone(sheet, traces, tmp_path):
+    """They take the whole specimen's volume for that of rock."""
+    options = Options(quick=True, drawing=Drawing(file=str(traces)))
+    found = {}
+    for name, given in (("intact", Options(quick=True)), ("drawn", options)):
+        (one,) = plan_ucs(sheet, given, 1)
+        found[name] = {quantity.name: quantity for quantity in read_ucs([run_of(one, "ucs", tmp_path / name, 25e6)])}
+    for stress in ("crack initiation stress", "crack damage stress"):
+        assert math.isnan(found["drawn"][stress].value) and "not defined" in found["drawn"][stress].about
+        assert "not defined" not in found["intact"][stress].about
