@@ -87,6 +87,7 @@ def assert_same_run(folder: Path, whole: Path) -> None:
 
 
 @pytest.mark.parametrize("kills", [3, pytest.param(20, marks=pytest.mark.validation)])
+@pytest.mark.thorough("3")
 def test_killed_again_and_again_it_ends_with_the_same_files(whole, tmp_path, kills):
     """SIGKILL at random times, start-up included: whatever was under way is done again, not lost and not doubled."""
     dice, command = random.Random(1), [sys.executable, "-m", "rsmpm_ti.scene", *RUN, "--out", str(tmp_path), "--resume"]

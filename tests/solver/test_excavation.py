@@ -30,6 +30,7 @@ from rsmpm_ti import (
     simulate,
 )
 from rsmpm_ti.spec.holes.excavation import marks
+from rsmpm_ti.spec.review.plausible import implausible
 from rsmpm_ti.spec.scene_json import from_plain, to_plain
 
 E, NU, DENSITY, RADIUS, HALF, DX, VERTICAL = 17e9, 0.25, 2600.0, 8e-3, 80e-3, 1.6e-3, 10e6
@@ -125,6 +126,12 @@ def test_a_support_beside_another_bears_what_that_does_not(times):
     assert np.abs(snapshot.velocity).max() < 1e-4 * VERTICAL / (DENSITY * ROCK.wave_speed())
 
 
+def test_excavation_after_the_end_is_doubted():
+    said = [line for line in implausible(ground(holes=(replace(DIG, time=TRANSIT),), end=0.5)) if "holes" in line]
+    assert len(said) == 1 and said[0].startswith("loading.holes[0].time = ") and "after the end" in said[0]
+    assert not [line for line in implausible(ground()) if "holes" in line]
+
+
 BESIDE = Box(lower=(8e-3, 8e-3), upper=(12.8e-3, 12.8e-3))
 PRESSED = Platen(axis=1, side="upper", position=24e-3, stress=VERTICAL)
 
@@ -132,7 +139,6 @@ PRESSED = Platen(axis=1, side="upper", position=24e-3, stress=VERTICAL)
 @pytest.mark.parametrize(
     "holes, boundaries, words",
     [
-        ((replace(DIG, time=100.0 * TRANSIT),), None, ["holes[0].time", "before the end of the run"]),
         ((HolePressure(region=BESIDE, times=(0.0,), pressures=(1e6,)),
           replace(DIG, region=Box(lower=(14.4e-3, 8e-3), upper=(19.2e-3, 16e-3)))), None,
          ["holes[1].region", "more than two cells from that of holes[0]"]),

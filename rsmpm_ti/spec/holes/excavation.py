@@ -84,8 +84,8 @@ def marks(scene) -> np.ndarray:
 
 
 def check_excavations(scene, seeds: list[Seeds]) -> None:
-    """Refuse an excavation of nothing, of everything, two in one place, of a wall that is pressed by a hole or by a
-    platen that a force moves, and one that comes after the end."""
+    """Refuse an excavation of nothing, of everything, two in one place, and of a wall that is pressed by a hole or by a
+    platen that a force moves."""
     found = excavations_of(scene)
     if not found:
         return
@@ -94,8 +94,6 @@ def check_excavations(scene, seeds: list[Seeds]) -> None:
         if not np.any(mark == k):
             remedy = "there is no rock to take out"
             raise refuse(f"holes[{k}].region", hole.region, "a region of a body, larger than a particle", remedy)
-        if hole.time >= scene.t_end:
-            raise refuse(f"holes[{k}].time", hole.time, f"before the end of the run, {scene.t_end:.4g} s")
         for boundary in scene.loading.boundaries:
             if getattr(boundary, "held", False) and _touches(hole.region, boundary, scene.domain.dx):
                 remedy = "give it a speed: its force would be left without the rock that bore it"

@@ -11,6 +11,7 @@ from dataclasses import dataclass, replace
 from rsmpm_ti.checks import KNOWN, is_pressure, pressure_said, too_small
 from rsmpm_ti.errors import SceneError
 from rsmpm_ti.spec.bodies.rocks import named_rocks
+from rsmpm_ti.spec.holes.excavation import excavations_of
 from rsmpm_ti.spec.mass_scaling import estimate
 from rsmpm_ti.spec.regions import Slit, removals_of
 
@@ -82,7 +83,16 @@ def implausible(scene) -> list[str]:
     rock = [said for path, value, known in _known(scene) if (said := _outside(path, value, known))]
     ratios = [said for name, one in named_rocks(scene) for said in _ratios_said(name, one)]
     units = [*_pressures_said(scene, "loading", "output"), *_angles_said(scene)]
-    return [*rock, *ratios, *units, *_loading_said(scene), *_overburden_said(scene)]
+    return [*rock, *ratios, *units, *_loading_said(scene), *_overburden_said(scene), *_excavations_said(scene)]
+
+
+def _excavations_said(scene) -> list[str]:
+    """Those that come after the end, of a run that may go on later."""
+    return [
+        f"loading.holes[{k}].time = {hole.time:g} s comes after the end of the run, {scene.t_end:.4g} s"
+        for k, hole in excavations_of(scene)
+        if hole.time >= scene.t_end
+    ]
 
 
 def _known(scene) -> list[tuple[str, float, Range]]:
