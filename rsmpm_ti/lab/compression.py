@@ -33,8 +33,8 @@ BEYOND = {False: 1.3, True: 2.2}
 
 DRAWN = 0.25
 """Time scale of a drawn specimen over that of an intact one of its size: it cracks at a part of the load, and a servo
-slows the platens then. For the slit specimen of `cube_lab` it is 15, whose peak is within a per cent of slow loading's
-(docs/method.md)."""
+slows the platens then. Of the paper's rock that is 15; `cube_lab` goes at 16, and its peak is within a per cent of slow
+loading's (docs/method.md). Of other specimens and rocks that was not measured."""
 
 LATE = 0.9
 """Fraction of the final strain from which the load is the residual one."""

@@ -122,7 +122,8 @@ def _smeared(test: str, one: Measured) -> Doubt | None:
     if test not in ("ucs", "triaxial") or not widths or not mean.acts or mean.length <= 0.5 * min(widths):
         return None
     said = f"the mean stress that decides is over {1e3 * mean.length:.3g} mm, a flaw {1e3 * min(widths):.3g} mm wide"
-    return _doubt(one, False, f"{said}: its ends crack too late, and the load falls at once; take a smaller --dx")
+    return _doubt(one, False, f"{said}: its ends are rounder to it than drawn; give flaws a width, a fifth "
+                              f"number in each row of the table, of {2e3 * mean.length:.3g} mm or more")  # fmt: skip
 
 
 def _shallow(test: str, one: Measured) -> Doubt | None:

@@ -14,6 +14,7 @@ from rsmpm_ti.lab.compression import plan_triaxial, plan_ucs, read_ucs
 from rsmpm_ti.lab.drawing import Drawing
 from rsmpm_ti.lab.running import is_done
 from rsmpm_ti.lab.standard import Options
+from rsmpm_ti.lab.validity import doubts_of
 from rsmpm_ti.spec.library.rocks import load_sheet
 from rsmpm_ti.spec.scene_json import from_plain, to_plain
 
@@ -144,3 +145,12 @@ def test_crack_stresses_are_of_intact_specimens_alone(sheet, traces, tmp_path):
     for stress in ("crack initiation stress", "crack damage stress"):
         assert math.isnan(found["drawn"][stress].value) and "not defined" in found["drawn"][stress].about
         assert "not defined" not in found["intact"][stress].about
+
+
+@pytest.mark.parametrize(("width", "told"), [("", True), (",5", True), (",9", False)])
+def test_flaw_narrower_than_twice_the_mean_is_told(sheet, tmp_path, width, told):
+    """With cells of 2 mm the mean is over 4 mm, and a flaw without a width 6 mm wide."""
+    (tmp_path / "traces.csv").write_text(f"15,35,35,65{width}\n")
+    (one,) = plan_ucs(sheet, Options(quick=True, drawing=Drawing(file=str(tmp_path / "traces.csv"))), 1)
+    doubts = doubts_of("ucs", run_of(one, "ucs", tmp_path / "out", 25e6))
+    assert [doubt.grave for doubt in doubts if "fifth number in each row" in doubt.sentence] == [False] * told
