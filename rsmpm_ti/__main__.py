@@ -15,6 +15,7 @@ COMMANDS = {
     ),
     "study": ("rsmpm_ti.study.__main__", "families of runs against theory: grids, flaw angles, fracture energy"),
     "calibrate": ("rsmpm_ti.calibrate.__main__", "fit a rock to measured numbers and curves, by tests of the lab"),
+    "validate": ("rsmpm_ti.validate.__main__", "hold predictions against experiments on rock: measured distances"),
     "bench": ("rsmpm_ti.bench.__main__", "measure speed, alone and against error"),
 }
 """Command -> the module whose `main(arguments)` it is, which `python -m rsmpm_ti.COMMAND` runs too; what it does."""

@@ -17,7 +17,7 @@ PACKAGE = ROOT / "rsmpm_ti"
 
 ROOMS = """
     ctrl_c errors process units checks records backend rock method spec setups fields analysis failure mpm solver paint
-    output results run lab cases verify hardcases study bench calibrate scene
+    output results run lab cases verify hardcases study bench calibrate validate scene
 """.split()
 """Ground floor first: a module imports only from rooms to the left of its own, and within its room in no circle."""
 

@@ -2,23 +2,32 @@
 
 import argparse
 import os
+from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
 
-from rsmpm_ti.cases.report import print_head, print_rows, write_table
+from rsmpm_ti.cases.case import Row
+from rsmpm_ti.cases.report import VERDICTS, Layout, print_head, print_rows, write_table
 from rsmpm_ti.cases.running import cases_of, run_cases
 from rsmpm_ti.process import command, tell
 
 
 @dataclass(frozen=True, kw_only=True)
 class Suite:
-    """`python -m rsmpm_ti.NAME`: the module that holds its CASES, and the file that its table goes to."""
+    """`python -m rsmpm_ti.NAME`: the module that holds its CASES, and the file that its table goes to.
+
+    layout: of the table; write: more files made of all (case, row), given their folder; misses_fail: whether a row that
+    does not pass makes the command fail, as a case that breaks does.
+    """
 
     name: str
     about: str
     catalogue: str
     table: str
     threads: int | None = None  # of each case; by default the processors are shared out
+    layout: Layout = VERDICTS
+    write: Callable[[Path, list[tuple[str, Row]]], None] | None = None
+    misses_fail: bool = True
 
 
 def parser(suite: Suite) -> argparse.ArgumentParser:
@@ -33,7 +42,7 @@ def parser(suite: Suite) -> argparse.ArgumentParser:
 
 @command
 def run_suite(suite: Suite, arguments: list[str] | None = None) -> int:
-    """Exit status: 0 every row passes, 1 some do not or a case breaks, 2 the command is refused."""
+    """Exit status: 0 every row passes or need not, 1 some do not or a case breaks, 2 the command is refused."""
     options, cases = parser(suite).parse_args(arguments), cases_of(suite.catalogue)
     if options.list:
         for case in cases.values():
@@ -52,16 +61,19 @@ def run_suite(suite: Suite, arguments: list[str] | None = None) -> int:
         tell(f"{suite.name}: {out} cannot be written: {error.strerror}; give another with --out")
         return 2
     jobs = min(options.jobs, len(names))
-    rows, misses = [], 0
-    print_head()
+    rows, broken = [], 0
+    print_head(suite.layout)
     threads = suite.threads or max(1, (os.cpu_count() or 1) // jobs)
     for done in run_cases(suite.catalogue, names, options.full, out, jobs, threads):
-        print_rows(done.name, done.rows, done.seconds)
+        print_rows(done.name, done.rows, done.seconds, suite.layout)
         if done.problem:
             print(f"{done.name:<18} broke: {done.problem}", flush=True)
-        misses += sum(not row.passed for row in done.rows) + bool(done.problem)
+            broken += 1
         rows += [(done.name, row) for row in done.rows]
     rows.sort(key=lambda entry: names.index(entry[0]))
-    write_table(out / suite.table, rows)
+    write_table(out / suite.table, rows, suite.layout)
+    if suite.write is not None:
+        suite.write(out, rows)
+    misses = sum(not row.passed for _, row in rows) + broken
     print(f"{len(rows)} numbers, {misses} misses; table and pictures in {out}")
-    return 1 if misses else 0
+    return 1 if broken or (misses and suite.misses_fail) else 0

@@ -1,15 +1,26 @@
-"""The table of a verification: on the terminal, as CSV, and one picture per case."""
+"""The table of cases: on the terminal, as CSV, and one picture per case."""
 
 import math
+from collections.abc import Callable
+from dataclasses import dataclass
 from pathlib import Path
 
 from rsmpm_ti.cases.case import Outcome, Row
 from rsmpm_ti.records.files import complete, write_csv
 
-COLUMNS = ("case", "quantity", "reference", "got", "error", "tolerance", "verdict", "reason")
+
+@dataclass(frozen=True, kw_only=True)
+class Layout:
+    """How rows are shown. `cells` of a case's row, one per column; `line` formats those of the terminal's table;
+    `remark` is said below a row, "" for none."""
+
+    columns: tuple[str, ...]
+    cells: Callable[[str, Row], list[str]]
+    line: str
+    remark: Callable[[Row], str]
 
 
-def cells(name: str, row: Row) -> list[str]:
+def _cells(name: str, row: Row) -> list[str]:
     numbers = [f"{v:.6g}" for v in (row.reference, row.got)]
     if row.tolerance == math.inf:
         return [name, row.quantity, "", numbers[1], "", "", "seen", row.reason]
@@ -17,23 +28,37 @@ def cells(name: str, row: Row) -> list[str]:
     return [name, row.quantity, *numbers, f"{row.error:+.3g}", f"{row.tolerance:.3g}", verdict, row.reason]
 
 
-def write_table(path: Path, rows: list[tuple[str, Row]]) -> None:
-    """One line per compared number, with the reason of its tolerance."""
-    write_csv(path, COLUMNS, (cells(name, row) for name, row in rows))
+def _remark(row: Row) -> str:
+    """A miss is followed by the reason of its tolerance."""
+    return "" if row.passed else f"tolerance: {row.reason}"
 
 
-def print_rows(name: str, rows: tuple[Row, ...], seconds: float) -> None:
-    """The rows of one case as they come; a miss is followed by the reason of its tolerance."""
+VERDICTS = Layout(
+    columns=("case", "quantity", "reference", "got", "error", "tolerance", "verdict", "reason"),
+    cells=_cells,
+    line="{0:<18} {1:<52} {2:>12} {3:>12} {4:>10} {5:>9}  {6}",
+    remark=_remark,
+)
+"""Of rows that pass or miss."""
+
+
+def write_table(path: Path, rows: list[tuple[str, Row]], layout: Layout = VERDICTS) -> None:
+    """One line per compared number."""
+    write_csv(path, layout.columns, (layout.cells(name, row) for name, row in rows))
+
+
+def print_rows(name: str, rows: tuple[Row, ...], seconds: float, layout: Layout = VERDICTS) -> None:
+    """The rows of one case as they come, each with its remark."""
     for row in rows:
-        _, quantity, reference, got, error, tolerance, verdict, reason = cells(name, row)
-        print(f"{name:<18} {quantity:<52} {reference:>12} {got:>12} {error:>10} {tolerance:>9}  {verdict}", flush=True)
-        if not row.passed:
-            print(f"{'':<19}tolerance: {reason}", flush=True)
+        print(layout.line.format(*layout.cells(name, row)), flush=True)
+        remark = layout.remark(row)
+        if remark:
+            print(f"{'':<19}{remark}", flush=True)
     print(f"{name:<18} {seconds:.0f} s", flush=True)
 
 
-def print_head() -> None:
-    print(f"{'case':<18} {'quantity':<52} {'reference':>12} {'got':>12} {'error':>10} {'tolerance':>9}  verdict")
+def print_head(layout: Layout = VERDICTS) -> None:
+    print(layout.line.format(*layout.columns))
 
 
 def draw(path: Path, outcome: Outcome) -> None:

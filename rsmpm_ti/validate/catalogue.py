@@ -1,0 +1,8 @@
+"""Every case of validation by name."""
+
+from rsmpm_ti.validate.experiment import Experiment
+from rsmpm_ti.validate.strength import westerly
+
+MODULES = (westerly,)
+
+CASES: dict[str, Experiment] = {case.name: case for module in MODULES for case in module.CASES}

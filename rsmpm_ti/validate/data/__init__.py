@@ -1,0 +1,1 @@
+"""Measured numbers, retyped from the papers that every line names."""

@@ -1,0 +1,1 @@
+"""Waves that break rock, and cracks that run."""

@@ -1,0 +1,1 @@
+"""The paper's two examples, flawed specimens, and what decides about them."""

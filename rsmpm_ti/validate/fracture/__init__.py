@@ -1,0 +1,1 @@
+"""Cracks that grow at a fracture energy: notched beams and plates."""

@@ -1,0 +1,1 @@
+"""Strength of intact rock against stress: envelopes that were measured on rock."""

@@ -1,0 +1,53 @@
+"""Criteria made of a few measured strengths, which then are inputs and judge nothing."""
+
+import numpy as np
+from scipy.optimize import brentq
+
+from rsmpm_ti.validate.data.tables import Strength
+
+
+def ends_and_middle(points: tuple[Strength, ...]) -> tuple[Strength, ...]:
+    """Of the lowest, the highest and the middle pressure of the measured range, every repeat: one rule for all rocks.
+
+    The middle one is that nearest to half of the range.
+    """
+    pressures = sorted({p.sigma_3 for p in points})
+    half = 0.5 * (pressures[0] + pressures[-1])
+    middle = min(pressures, key=lambda p: abs(p - half))
+    return tuple(p for p in points if p.sigma_3 in (pressures[0], middle, pressures[-1]))
+
+
+def _line(points: tuple[Strength, ...]) -> tuple[float, float]:
+    """Slope N and intercept UCS [Pa] of sigma_1 = UCS + N sigma_3, by least squares."""
+    slope, intercept = np.polyfit([p.sigma_3 for p in points], [p.sigma_1 for p in points], 1)
+    return float(slope), float(intercept)
+
+
+def mohr_coulomb(points: tuple[Strength, ...]) -> tuple[float, float]:
+    """Cohesion [Pa] and friction angle [degrees] of the line through some strengths: N = tan^2(45 + phi/2), UCS =
+    2 c sqrt(N) (Jaeger, Cook & Zimmerman 2007, sec. 4.5)."""
+    slope, ucs = _line(points)
+    return ucs / (2.0 * np.sqrt(slope)), float(np.degrees(2.0 * np.arctan(np.sqrt(slope))) - 90.0)
+
+
+def hoek_brown(points: tuple[Strength, ...]) -> tuple[float, float]:
+    """sigma_ci [Pa] and m_i of intact rock: (sigma_1 - sigma_3)^2 = m_i sigma_ci sigma_3 + sigma_ci^2 is a line in
+    sigma_3, fitted by least squares (Hoek & Brown 1980, J. Geotech. Eng. Div. ASCE 106:1013)."""
+    slope, intercept = np.polyfit([p.sigma_3 for p in points], [(p.sigma_1 - p.sigma_3) ** 2 for p in points], 1)
+    strength = float(np.sqrt(intercept))
+    return strength, float(slope) / strength
+
+
+def at_equal_scatter(values: np.ndarray) -> float:
+    """Standard deviation of repeats over their mean."""
+    return float(np.std(values, ddof=1) / np.mean(values))
+
+
+def radial_at(criterion, axial: float) -> float:
+    """Radial pressure [Pa] at which extension fails at an axial stress [Pa], both compression positive: that under
+    which the criterion is just reached. The axial stress is sigma_3 there."""
+
+    def excess(radial: float) -> float:
+        return radial - criterion.strength(axial)
+
+    return float(brentq(excess, axial, 100.0 * criterion.ucs))
