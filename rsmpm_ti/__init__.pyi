@@ -21,6 +21,9 @@ from .rock.after_failure import Variable as Variable
 from .rock.after_failure import Void as Void
 from .rock.criteria import MohrCoulomb as MohrCoulomb
 from .rock.criteria import Unbreakable as Unbreakable
+from .rock.curved.fairhurst import Fairhurst as Fairhurst
+from .rock.curved.hoek_brown import HoekBrown as HoekBrown
+from .rock.curved.hoek_brown import rock_mass as rock_mass
 from .rock.elasticity import Hooke as Hooke
 from .rock.heterogeneity import Uniform as Uniform
 from .rock.heterogeneity import Weibull as Weibull

@@ -10,6 +10,8 @@ from rsmpm_ti.checks import members
 
 REQUIRED = {
     "Hooke": {"E": 17e9, "nu": 0.14},
+    "HoekBrown": {"intact_strength": 25e6, "m": 10.0, "tensile_strength": 2e6},
+    "Fairhurst": {"compressive_strength": 25e6, "tensile_strength": 2e6},
     "MohrCoulomb": {"cohesion": 5.95e6, "friction_angle": 40.0, "tensile_strength": 2e6},
     "Clipped": {"tension_limit": 1e6, "compression_limit": 30e6},
     "PicFlip": {"flip": 0.3},  # neither of its two ends

@@ -24,6 +24,8 @@ from rsmpm_ti.checks import KNOWN
 from rsmpm_ti.errors import SceneError
 from rsmpm_ti.fields.state import initial_velocity
 from rsmpm_ti.output.pictures import load_limits, stress_limit
+from rsmpm_ti.rock.curved.fairhurst import Fairhurst
+from rsmpm_ti.rock.curved.hoek_brown import HoekBrown
 from rsmpm_ti.rock.elasticity import Hooke
 from rsmpm_ti.spec.domain import Domain
 from rsmpm_ti.spec.ground.gravity import Gravity
@@ -102,7 +104,10 @@ def bases() -> list[Scene]:
     pressed = HolePressure(region=hole, times=(1e-3, 2e-3), pressures=(1e6, 0.0))
     blasted = replace(timed, bodies=(drilled,), loading=replace(timed.loading, holes=(pressed,)))
     dug = replace(ground, loading=replace(ground.loading, holes=(Excavation(region=CORNER, time=1e-6),)))
-    return [plain, timed, lab, steered, solid, ground, mixed, blasted, dug]
+    curved = replace(plain.rock, criterion=HoekBrown(intact_strength=25e6, m=10.0, tensile_strength=2e6))
+    hybrid = replace(plain.rock, criterion=Fairhurst(compressive_strength=25e6, tensile_strength=2e6))
+    bent = [replace(plain, rock=rock) for rock in (curved, hybrid)]
+    return [plain, timed, lab, steered, solid, ground, mixed, blasted, dug, *bent]
 
 
 def at(thing, path: list):

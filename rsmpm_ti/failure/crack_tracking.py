@@ -14,7 +14,7 @@ from rsmpm_ti.failure.of_rock import belongs
 from rsmpm_ti.failure.stress_update import start_failure
 from rsmpm_ti.fields.nonlocal_sums import MAX_NEW_CRACKS
 from rsmpm_ti.fields.stencil import coordinates
-from rsmpm_ti.rock.criteria import strengths
+from rsmpm_ti.rock.criteria import tensile_strength
 from rsmpm_ti.rock.tensors import extreme_principals, principal_normal
 
 
@@ -27,7 +27,7 @@ def evaluate_overload(sim: ti.template()):
         asked = belongs(sim, p) and sim.nonlocal_sums.any_overloaded[None] == 1 and particles.mode[p] == 0
         if asked and near_overloaded(sim, p):
             mean = mean_stress(sim, p)
-            load = extreme_principals(mean)[0] / strengths(sim, p)[0]
+            load = extreme_principals(mean)[0] / tensile_strength(sim, p)
             normal = principal_normal(mean)
             if load >= 1.0 and sim.rock.nonlocal_mean.own_decides(sim, p, normal) == 0:
                 particles.overload[p] = load

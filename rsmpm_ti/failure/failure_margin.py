@@ -14,7 +14,7 @@ import taichi as ti
 from rsmpm_ti.failure.nonlocal_fields import mean_stress, sum_nonlocal
 from rsmpm_ti.failure.of_rock import belongs
 from rsmpm_ti.failure.stress_update import own_shear_load
-from rsmpm_ti.rock.criteria import load_factors, strengths
+from rsmpm_ti.rock.criteria import load_factors, tensile_strength
 from rsmpm_ti.rock.tensors import extreme_principals, principal_normal
 
 
@@ -30,7 +30,7 @@ def tensile_load(sim: ti.template(), p, own):
         load = ti.select(rule.own_decides(sim, p, principal_normal(sim.particles.sigma[p])) == 1, own, 0.0)
         mean = mean_stress(sim, p)
         if rule.own_decides(sim, p, principal_normal(mean)) == 0:
-            load = ti.max(load, extreme_principals(mean)[0] / strengths(sim, p)[0])
+            load = ti.max(load, extreme_principals(mean)[0] / tensile_strength(sim, p))
     return load
 
 

@@ -1,4 +1,8 @@
-"""When rock fails: tension cut-off first, then Mohr-Coulomb."""
+"""When rock fails: tension cut-off first, then Mohr-Coulomb. And what kernels ask of any criterion.
+
+A criterion answers `mode`, `reached` and `shear_load` of the extreme principal stresses in kernels, and `breaks`,
+`tensile_strength`, `ucs` and `strength(confinement)` outside of them. Others: `curved/`.
+"""
 
 import math
 from dataclasses import dataclass
@@ -88,6 +92,12 @@ def strength_factor(sim: ti.template(), p):
     if ti.static(sim.particles.varied):
         k = sim.particles.strength[p]
     return k
+
+
+@ti.func
+def tensile_strength(sim: ti.template(), p):
+    """Of a particle's rock before it cracked [Pa]."""
+    return sim.rock.criterion.tensile_strength * strength_factor(sim, p)
 
 
 @ti.func

@@ -14,6 +14,8 @@ import taichi as ti
 from rsmpm_ti.checks import ByType, Positive, checked
 from rsmpm_ti.rock.after_failure import Clipped, CompressionOnly, Void
 from rsmpm_ti.rock.criteria import MohrCoulomb, Unbreakable
+from rsmpm_ti.rock.curved.fairhurst import Fairhurst
+from rsmpm_ti.rock.curved.hoek_brown import HoekBrown
 from rsmpm_ti.rock.elasticity import Hooke
 from rsmpm_ti.rock.heterogeneity import Uniform, Weibull
 from rsmpm_ti.rock.nonlocal_mean import Local, Nonlocal
@@ -32,7 +34,7 @@ class Rock:
 
     density: Annotated[Density, Positive]
     elasticity: Annotated[Hooke, ByType]
-    criterion: Annotated[MohrCoulomb | Unbreakable, ByType]
+    criterion: Annotated[MohrCoulomb | HoekBrown | Fairhurst | Unbreakable, ByType]
     after_failure: Annotated[CompressionOnly | Void | Clipped | Directional, ByType] = CompressionOnly()
     viscosity: Annotated[BulkViscosity | NoViscosity, ByType] = BulkViscosity()
     nonlocal_mean: Annotated[Local | Nonlocal, ByType] = Local()

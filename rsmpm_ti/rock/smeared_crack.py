@@ -28,7 +28,7 @@ from rsmpm_ti.rock.broken.crack_return import (
     spring_energy,
     strength_left,
 )
-from rsmpm_ti.rock.criteria import strengths
+from rsmpm_ti.rock.criteria import MohrCoulomb, strengths
 from rsmpm_ti.rock.softening import Brittle, ExponentialSoftening, LinearSoftening
 from rsmpm_ti.units import Angle, Length
 
@@ -105,7 +105,11 @@ class Directional(AfterFailure):
         return found
 
     def check(self, rock, shape, dx: float) -> None:
-        """Refuse a crack band that loses strength faster than the rock in it unloads: Bazant & Oh (1983), eq. 34."""
+        """Refuse a criterion without cohesion, which slip takes, and a crack band that loses strength faster than the
+        rock in it unloads: Bazant & Oh (1983), eq. 34."""
+        if not isinstance(rock.criterion, MohrCoulomb):
+            remedy = "its rock loses cohesion by slip; curved criteria go with CompressionOnly, Clipped and Void"
+            raise refuse("rock.criterion", rock.criterion, "MohrCoulomb beside after_failure = Directional", remedy)
         if self.dilation_angle > 0.0 and rock.elasticity.plane_stress:
             raise refuse("after_failure.dilation_angle", self.dilation_angle, "0 in plane stress", "a plate bulges")
         pairs = (

@@ -2,6 +2,8 @@
 
 import math
 
+from rsmpm_ti.errors import refuse
+from rsmpm_ti.rock.criteria import MohrCoulomb
 from rsmpm_ti.rock.rock import Rock
 from rsmpm_ti.setups.slow import slow_time_scale
 from rsmpm_ti.spec.boundaries import Platen
@@ -49,6 +51,8 @@ def shear_test(
     elastic = rock.elasticity
     shear_speed = math.sqrt(elastic.E / (2.0 * (1.0 + elastic.nu) * rock.density))
     criterion = rock.criterion
+    if not isinstance(criterion, MohrCoulomb):
+        raise refuse("rock.criterion", criterion, "MohrCoulomb", "what this test measures is cohesion and friction")
     strength = criterion.cohesion + normal_stress * math.tan(math.radians(criterion.friction_angle))
     duration = 2.0 * (1.0 + elastic.nu) * strength / elastic.E * height / speed
     scale = time_scale or slow_time_scale(duration, 8.0 * height / shear_speed)

@@ -1,8 +1,8 @@
 """Every case of validation by name."""
 
 from rsmpm_ti.validate.experiment import Experiment
-from rsmpm_ti.validate.strength import westerly
+from rsmpm_ti.validate.strength import carrara, sigma_2, westerly, zigong
 
-MODULES = (westerly,)
+MODULES = (westerly, zigong, carrara, sigma_2)
 
 CASES: dict[str, Experiment] = {case.name: case for module in MODULES for case in module.CASES}

@@ -12,7 +12,9 @@ from rsmpm_ti import (
     Clipped,
     Difference,
     Directional,
+    Fairhurst,
     GPa,
+    HoekBrown,
     HolePressure,
     Hooke,
     LinearSoftening,
@@ -159,6 +161,14 @@ PRESSURES = {
     ("Hooke", "E"): lambda: specimen(paper(E=17.0)),
     ("MohrCoulomb", "cohesion"): lambda: specimen(paper(cohesion=14.63, tensile_strength=2.0)),
     ("MohrCoulomb", "tensile_strength"): lambda: specimen(paper(tensile_strength=2.0)),
+    ("HoekBrown", "intact_strength"): lambda: HoekBrown(intact_strength=108.0, m=17.0, tensile_strength=5e6),
+    ("HoekBrown", "tensile_strength"): lambda: specimen(
+        replace(paper(), criterion=HoekBrown(intact_strength=108e6, m=17.0, tensile_strength=5.0))
+    ),
+    ("Fairhurst", "compressive_strength"): lambda: Fairhurst(compressive_strength=130.0, tensile_strength=8e6),
+    ("Fairhurst", "tensile_strength"): lambda: specimen(
+        replace(paper(), criterion=Fairhurst(compressive_strength=130e6, tensile_strength=8.0))
+    ),
     ("Clipped", "tension_limit"): lambda: specimen(replace(paper(), after_failure=CLIPPED)),
     ("Clipped", "compression_limit"): lambda: specimen(
         replace(paper(), after_failure=replace(CLIPPED, tension_limit=0.0, compression_limit=100.0))

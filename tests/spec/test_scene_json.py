@@ -91,7 +91,7 @@ def test_unknown_missing_and_wrong_fields_are_refused_by_place():
         ("output.margin", 0, "true or false"),
         ("bodies.0.region", {"type": "Linear"}, "Box, Disc"),
         ("bodies.0.seeding", {"type": "Linear"}, "Lattice or Jittered"),
-        ("rock.criterion", {"type": "Void"}, "MohrCoulomb or Unbreakable"),
+        ("rock.criterion", {"type": "Void"}, "MohrCoulomb, HoekBrown, Fairhurst or Unbreakable"),
         ("loading.boundaries", [{"type": "Affine"}], "a list of Platen, Wall, Fixed or Absorbing"),
         ("bodies", {"type": "Affine"}, "a list of Body"),
     ],

@@ -42,6 +42,8 @@ RANGES = {
     "nu": Range(0.0, 0.45, "", 1.0, "Gercek (2007), Int. J. Rock Mech. Min. Sci. 44:1"),
     "density": Range(1000.0, 5000.0, "kg/m^3", 1.0, "Schoen (2015), Physical Properties of Rocks", (("g/cm^3", 1e3),)),
     "cohesion": Range(0.05e6, 150e6, "MPa", 1e6, STRENGTH, STRESS_UNITS[1:]),
+    "intact_strength": Range(0.25e6, 500e6, "MPa", 1e6, STRENGTH, STRESS_UNITS[1:]),
+    "compressive_strength": Range(0.25e6, 500e6, "MPa", 1e6, STRENGTH, STRESS_UNITS[1:]),
     "tensile_strength": Range(0.02e6, 40e6, "MPa", 1e6, STRENGTH, STRESS_UNITS[1:]),
     "friction_angle": Range(10.0, 70.0, "degrees", 1.0, HANDBOOK, (("radians", 180.0 / math.pi),)),
     "residual_friction_angle": Range(10.0, 60.0, "degrees", 1.0, HANDBOOK, (("radians", 180.0 / math.pi),)),

@@ -1,8 +1,9 @@
 """Criteria made of a few measured strengths, which then are inputs and judge nothing."""
 
 import numpy as np
-from scipy.optimize import brentq
+from scipy.optimize import minimize_scalar
 
+from rsmpm_ti.rock.curved.fairhurst import Fairhurst
 from rsmpm_ti.validate.data.tables import Strength
 
 
@@ -38,16 +39,13 @@ def hoek_brown(points: tuple[Strength, ...]) -> tuple[float, float]:
     return strength, float(slope) / strength
 
 
-def at_equal_scatter(values: np.ndarray) -> float:
-    """Standard deviation of repeats over their mean."""
-    return float(np.std(values, ddof=1) / np.mean(values))
+def fairhurst_strength(points: tuple[Strength, ...], tensile_strength: float) -> float:
+    """Compressive strength [Pa] of Fairhurst's parabola with this tensile strength [Pa]: the least squares of sigma_1
+    at the measured sigma_3."""
 
+    def misfit(strength: float) -> float:
+        criterion = Fairhurst(compressive_strength=strength, tensile_strength=tensile_strength)
+        return sum((criterion.strength(p.sigma_3) - p.sigma_1) ** 2 for p in points)
 
-def radial_at(criterion, axial: float) -> float:
-    """Radial pressure [Pa] at which extension fails at an axial stress [Pa], both compression positive: that under
-    which the criterion is just reached. The axial stress is sigma_3 there."""
-
-    def excess(radial: float) -> float:
-        return radial - criterion.strength(axial)
-
-    return float(brentq(excess, axial, 100.0 * criterion.ucs))
+    highest = 2.0 * max(p.sigma_1 for p in points)
+    return float(minimize_scalar(misfit, bounds=(3.0 * tensile_strength, highest), method="bounded").x)
