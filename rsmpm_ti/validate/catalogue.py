@@ -1,8 +1,9 @@
 """Every case of validation by name."""
 
+from rsmpm_ti.validate.examples import flawed, mode_two, paper
 from rsmpm_ti.validate.experiment import Experiment
 from rsmpm_ti.validate.strength import carrara, sigma_2, westerly, zigong
 
-MODULES = (westerly, zigong, carrara, sigma_2)
+MODULES = (westerly, zigong, carrara, sigma_2, paper, flawed, mode_two)
 
 CASES: dict[str, Experiment] = {case.name: case for module in MODULES for case in module.CASES}

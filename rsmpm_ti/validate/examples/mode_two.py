@@ -1,0 +1,79 @@
+"""Which answers depend on the energy that a crack in shear costs: G_f_II over three decades in three tests.
+
+The lab's rock has 24 J/m^2; intact granite sheared under pressure has 1e3 to 1e4 (Lockner et al. 1991, Nature 350:39;
+Moore & Lockner 1995, J. Struct. Geol. 17:95). Nothing judges these rows: they say how wrong an answer can be whose
+G_f_II nobody has measured.
+"""
+
+from dataclasses import replace
+
+from rsmpm_ti.cases.case import Outcome
+from rsmpm_ti.rock.presets import lab_rock
+from rsmpm_ti.setups.uniaxial import uniaxial_test
+from rsmpm_ti.spec.scene import Scene
+from rsmpm_ti.spec.seeding import Jittered
+from rsmpm_ti.units import MPa
+from rsmpm_ti.validate.comparison import predict
+from rsmpm_ti.validate.examples.specimen_runs import QUICK, Told, tell, to_the_peak
+from rsmpm_ti.validate.experiment import Experiment, Input
+
+OWN = 24.0
+"""Of the lab's rock [J/m^2]."""
+
+FACTORS = (1.0, 10.0, 100.0, 1000.0)
+
+PRESSURE = 5.0 * MPa
+"""Of the jacket of the intact specimen."""
+
+
+def _jacketed(energy: float) -> Scene:
+    return uniaxial_test(
+        title="Triaxial test of intact rock", rock=lab_rock(G_f_II=energy, length=2e-3), dx=1e-3, width=25e-3,
+        height=50e-3, strain_end=5e-3, confinement=PRESSURE, time_scale="auto", seeding=Jittered(amount=0.01),
+    )  # fmt: skip
+
+
+def _flawed(name: str, energy: float) -> Scene:
+    """The scene with its rock's G_f_II replaced, to twice the strain at which it would end."""
+    scene = to_the_peak(name, strain_end=2e-3, stop=False, **QUICK)
+    law = scene.rock.after_failure
+    softer = replace(law, softening=replace(law.softening, G_f_II=energy))
+    return replace(scene, rock=replace(scene.rock, after_failure=softer))
+
+
+TESTS = {
+    "flawed": lambda energy: _flawed("cube_lab", energy),
+    "flawed, confined": lambda energy: _flawed("confined", energy),
+    "intact at 5 MPa": _jacketed,
+}
+READ = {"onset": "first crack", "peak": "peak", "residual": "stress at the end"}
+WHY = "what depends on an energy that nobody measured for this rock; nothing judges it"
+
+
+def sweep(full: bool) -> Outcome:
+    found: dict[str, list[Told]] = {name: [tell(make(OWN * k)) for k in FACTORS] for name, make in TESTS.items()}
+    rows = [
+        predict(f"{name}: {word}, G_f_II x {k:g}", "MPa", getattr(told, key) / MPa, WHY)
+        for name, series in found.items()
+        for key, word in READ.items()
+        for k, told in zip(FACTORS, series, strict=True)
+    ]
+
+    def draw(figure):
+        panels = figure.subplots(1, len(TESTS))
+        for axes, (name, series) in zip(panels, found.items(), strict=True):
+            for key, word in READ.items():
+                axes.semilogx([OWN * k for k in FACTORS], [getattr(t, key) / MPa for t in series], "o-", label=word)
+            axes.set(xlabel="G_f_II [J/m^2]", title=name, ylim=(0, None))
+            axes.axvspan(1e3, 1e4, color="0.9", zorder=0)
+        panels[0].set_ylabel("nominal stress [MPa]")
+        panels[0].legend(fontsize="small")
+        figure.suptitle("What depends on the energy of a crack in shear; grey: intact granite")
+
+    return Outcome(tuple(rows), draw)
+
+
+CASES = (
+    Experiment("mode_two", "which answers depend on the fracture energy in shear: 24 J/m2 times 1 to 1000", sweep,
+               quick=False, inputs=(Input("G_f_II", OWN, "J/m^2", "`lab_rock`"),)),
+)  # fmt: skip
