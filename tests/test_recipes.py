@@ -48,7 +48,7 @@ def test_recipes_make_one_scene_that_breaks(folder):
     (folder / "mine.py").write_text(recipe(*TOGETHER), encoding="utf-8")
     scene = load_scene("mine.py", dx=2.5e-3, strain_end=8e-4, settings={"schedule.rows": "50"})
     assert {type(part).__name__ for part in (scene.shape, scene.transfer, scene.rock.criterion)} == {
-        "Blend", "LimitedFlip", "HoekBrown",
+        "Blend", "LimitedFlip", "Sheorey",
     }  # fmt: skip
     near = np.linspace(-2.0, 2.0, 401)
     total = sum(scene.shape.profile(near - k) for k in range(-4, 5))

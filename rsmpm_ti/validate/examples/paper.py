@@ -49,7 +49,7 @@ class Grown:
         times = np.sort(self.result.events.time)
         chosen = times[np.linspace(0, len(times) - 1, STEPS).astype(int)]
         stress = nominal_stress(self.result.history)
-        return [(float(t), float(np.interp(t, self.result.history["time"], stress))) for t in chosen]
+        return [(float(t), float(np.interp(t, self.result.history["time_s"], stress))) for t in chosen]
 
     def from_tip(self) -> float:
         """Distance of the first failure from the nearer end of the flaw, along the flaw [m]."""

@@ -46,7 +46,7 @@ def tell(scene: Scene) -> Told:
     """Run it."""
     result = simulate(scene, threads=1)
     summary, events = result.summary, result.events
-    time, stress = result.history["time"], nominal_stress(result.history)
+    time, stress = result.history["time_s"], nominal_stress(result.history)
     onset, peak = (summary.get(key) for key in ("first_failure_stress_Pa", "peak_filtered_Pa"))
     sheared = events.time[events.mode == SHEAR]
     slits, along = slits_of(scene.bodies[0].region), math.nan

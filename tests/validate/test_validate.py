@@ -1,0 +1,135 @@
+"""The quick tier of `python -m rsmpm_ti.validate`: distances as they were, and what a case may be judged by."""
+
+import csv
+import json
+import math
+
+import pytest
+
+from rsmpm_ti.cases.running import run_case
+from rsmpm_ti.validate.__main__ import CATALOGUE, main
+from rsmpm_ti.validate.catalogue import CASES, MODULES
+from rsmpm_ti.validate.comparison import Comparison, compare, predict
+from rsmpm_ti.validate.data.tables import FOLDER, gregoire, strengths
+from rsmpm_ti.validate.experiment import Experiment, Input
+
+PINNED = {
+    "westerly": {"strength under 17 MPa": -0.019},
+    "zigong": {"strength under 10 MPa, Hoek-Brown": -0.022},
+    "carrara": {
+        "axial stress under 30 MPa, Mohr-Coulomb": 0.008,
+        "differential stress under 30 MPa, Mohr-Coulomb": 0.002,
+        "radial stress at an axial one of -6.9 MPa, hybrid": 0.029,
+        "differential stress under 90 MPa, hybrid": 0.002,
+    },
+}
+"""Distances of the quick tier from experiment. They are pins, so that a change of the solver that moves one is seen."""
+
+MOVED = 0.01
+"""A pinned distance may move by this: a specimen of twelve cells, and machines that add in another order."""
+
+
+@pytest.mark.parametrize("name", [name for name, case in CASES.items() if case.quick])
+def test_distance_to_experiment_is_the_one_that_was_told(name, tmp_path):
+    rows = run_case(CATALOGUE, name, full=False, out=tmp_path, threads=1)
+    assert {row.quantity for row in rows} == set(PINNED[name])
+    for row in rows:
+        assert row.error == pytest.approx(PINNED[name][row.quantity], abs=MOVED), row.quantity
+        assert len(row.reason) > 3, "every measured number has its source beside it"
+    assert (tmp_path / f"{name}.png").stat().st_size > 10_000
+    judged = {key for row in rows for key in row.datum.split(", ") if key}
+    assert judged <= set(CASES[name].judged)
+
+
+def test_every_quick_case_is_pinned():
+    assert set(PINNED) == {name for name, case in CASES.items() if case.quick}
+
+
+@pytest.mark.parametrize("name", CASES)
+def test_no_case_is_judged_by_what_it_was_made_of(name):
+    case = CASES[name]
+    used = {key for given in case.inputs for key in given.fitted_on}
+    assert not used & set(case.judged)
+    assert case.inputs and all(len(given.source) > 3 and math.isfinite(given.value) for given in case.inputs)
+
+
+def test_case_that_would_judge_its_own_fit_cannot_be_made():
+    given = Input("cohesion", 1e6, "Pa", "a line", ("table.csv:2",))
+    with pytest.raises(ValueError, match="judged by what it was fitted on: table.csv:2"):
+        Experiment("circular", "", lambda full: None, inputs=(given,), judged=("table.csv:2", "table.csv:3"))
+
+
+def test_keys_are_lines_of_the_tables():
+    for case in CASES.values():
+        for key in (*case.judged, *(key for given in case.inputs for key in given.fitted_on)):
+            file, line = key.rsplit(":", 1)
+            assert 2 <= int(line) <= len((FOLDER / file).read_text(encoding="utf-8").splitlines())
+
+
+def test_a_changed_datum_changes_what_is_fitted_to_it(monkeypatch):
+    """The declared inputs are made of the data, not typed beside them."""
+    from rsmpm_ti.validate.strength.fits import mohr_coulomb
+
+    points = strengths("Westerly granite", "compression")
+    cohesion, friction = mohr_coulomb(points[:2])
+    N = math.tan(math.radians(45.0 + 0.5 * friction)) ** 2
+    assert (385.0 - 256.0) / 13.0 == pytest.approx(N, rel=1e-9)
+    assert 2.0 * cohesion * math.sqrt(N) == pytest.approx(256e6, rel=1e-9)
+
+
+@pytest.mark.parametrize(
+    "row, verdict, passed",
+    [
+        (compare("a", "MPa", 10.0, 10.4, 0.02, "source", scatter=0.05), "inside the band", True),
+        (compare("a", "MPa", 10.0, 10.4, 0.05, "source"), "within the target", True),
+        (compare("a", "MPa", 10.0, 12.0, 0.05, "source"), "outside by 20.0 %", False),
+        (compare("a", "MPa", -10.0, -12.0, 0.05, "source", scatter=0.3), "inside the band", True),
+        (compare("a", "MPa", 10.0, 12.0, 0.05, "source", beyond="no sigma_2"), "beyond this model", False),
+        (compare("a", "degrees", 70.0, 62.0, 5.0, "source", absolute=True), "outside by 8 degrees", False),
+        (compare("a", "degrees", 70.0, 62.0, 5.0, "source", absolute=True, band=(60.0, 80.0)), "inside the band", True),
+        (compare("a", "MPa", 10.0, math.nan, 0.05, "source"), "nothing predicted", False),
+        (predict("a", "MPa", 10.0, "nobody measured it"), "predicted", True),
+    ],
+)
+def test_verdict(row: Comparison, verdict, passed):
+    assert row.verdict == verdict
+    assert row.passed is passed or row.tolerance == math.inf
+
+
+def test_tables_are_as_they_were_published():
+    assert [p.sigma_1 for p in strengths("Westerly granite", "compression")] == [
+        256e6,
+        385e6,
+        424e6,
+        520e6,
+        632e6,
+        758e6,
+    ]
+    marble = strengths("Carrara marble", "extension")
+    assert (marble[4].sigma_1, marble[4].sigma_3) == (70e6, -10.6e6)
+    band = gregoire()
+    assert (band.low < band.high).all() and 1110.0 < band.high.max() < 1115.0
+    assert 0.2e-3 < band.opening[-1] < 0.21e-3
+    with pytest.raises(KeyError):
+        strengths("Moon", "compression")
+
+
+def test_names_are_unique_and_fit_the_table():
+    names = [case.name for module in MODULES for case in module.CASES]
+    assert len(set(names)) == len(names) and max(map(len, names)) <= 12
+
+
+def test_command_writes_table_json_page_and_picture(tmp_path, capsys):
+    assert main(["westerly", "--out", str(tmp_path), "--jobs", "1"]) == 0
+    assert "within the target" in capsys.readouterr().out
+    (row,) = csv.DictReader((tmp_path / "validation.csv").open(encoding="utf-8"))
+    assert row["case"] == "westerly" and row["measured"] == "424"
+    record = json.loads((tmp_path / "validation.json").read_text(encoding="utf-8"))["cases"]["westerly"]
+    assert record["rows"][0]["datum"] == row["datum"] and record["inputs"][0]["fitted_on"]
+    assert "| strength under 17 MPa | 424 |" in (tmp_path / "validation.md").read_text(encoding="utf-8")
+    assert (tmp_path / "westerly.png").is_file()
+
+
+def test_unknown_case_is_refused(capsys):
+    assert main(["moon"]) == 2
+    assert "unknown case moon" in capsys.readouterr().err
