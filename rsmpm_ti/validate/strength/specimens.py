@@ -12,7 +12,7 @@ from dataclasses import replace
 from rsmpm_ti import load_rock, simulate, uniaxial_test
 from rsmpm_ti.rock.rock import Rock
 
-CELLS, QUICK_CELLS = 50, 12
+CELLS, QUICK_CELLS = 25, 12
 """Across a width of 50 mm."""
 
 WIDTH = 50e-3
