@@ -1,11 +1,11 @@
 """Plates of solids that break in tension by a known fracture energy, on cells larger than their process zone.
 
 The zone in which such a solid loses its strength, E G_f/sigma_t^2, is 1.1 mm long in maraging steel and 0.4 mm in PMMA.
-The mean stress that decides on tension (rock/nonlocal_mean.py) must be short against it, and two cells long. Where it
-is not, the strength is lowered until it is, with the energy kept, as the crack band model does for large
-elements (Bazant & Oh 1983, Mater. Struct. 16:155). The energy decides when a crack from a notch runs; the strength
-decides when rock without a notch breaks, which then is too early. No result enters: the strength follows from E, G_f
-and the cell.
+The mean stress that decides on tension (rock/nonlocal_mean.py) is two cells long and spans four times that, which must
+fit into the zone (rock/sheet/data_sheet.py warns where it does not). Where it does not, the strength is lowered until
+it does, with the energy kept, as the crack band model does for large elements (Bazant & Oh 1983, Mater. Struct.
+16:155). The energy decides when a crack from a notch runs; the strength decides when rock without a notch breaks, which
+then is too early. No result enters: the strength follows from E, G_f and the cell.
 """
 
 import math
@@ -16,11 +16,9 @@ from rsmpm_ti.rock.criteria import MohrCoulomb
 from rsmpm_ti.rock.elasticity import Hooke
 from rsmpm_ti.rock.nonlocal_mean import MIN_CELLS, Nonlocal
 from rsmpm_ti.rock.rock import Rock
+from rsmpm_ti.rock.sheet.data_sheet import SPAN
 from rsmpm_ti.rock.smeared_crack import Directional
 from rsmpm_ti.rock.softening import LinearSoftening
-
-ZONE = 5.0
-"""Lengths of the mean stress in a process zone, at least."""
 
 OUT_OF_REACH = 10.0
 """Cohesion over tensile strength: what these solids do in shear, which is to yield, is not modelled."""
@@ -30,8 +28,11 @@ SHEAR_ENERGY = 1000.0
 
 
 def carried_strength(elasticity: Hooke, energy: float, strength: float, dx: float) -> float:
-    """The tensile strength [Pa], or what cells of dx [m] can carry of it with a fracture energy [J/m^2]."""
-    return min(strength, math.sqrt(elasticity.E * energy / (ZONE * MIN_CELLS * dx)))
+    """The tensile strength [Pa], or what cells of dx [m] can carry of it with a fracture energy [J/m^2].
+
+    sqrt(E G_f/(4 l)), l the length of the mean.
+    """
+    return min(strength, math.sqrt(elasticity.E * energy / (SPAN * MIN_CELLS * dx)))
 
 
 def tough(*, density: float, elasticity: Hooke, energy: float, strength: float, dx: float) -> Rock:
@@ -56,15 +57,17 @@ def _in_tension(strength: float) -> MohrCoulomb:
 
 
 def front_speed(time: np.ndarray, way: np.ndarray, window: float) -> tuple[np.ndarray, np.ndarray]:
-    """Middle [s] and speed [m/s] of windows [s] of a front, by a line through each that holds six failures or more.
+    """Middle [s] and speed [m/s] of windows [s] of a front, by a line through each; one NaN for a crack of no length.
 
-    time [e], ascending, and way [e] of failures [m]; the front is the furthest so far.
+    time [e], ascending, and way [e] of failures [m]; the front is the furthest so far. Windows of fewer than six
+    failures say nothing.
     """
-    front, edges = np.maximum.accumulate(way), np.arange(time[0], time[-1], window)
-    found = []
-    for start in edges:
+    if len(time) < 6:
+        return np.full(1, np.nan), np.full(1, np.nan)
+    front, found = np.maximum.accumulate(way), []
+    for start in np.arange(time[0], time[-1], window):
         held = (time >= start) & (time < start + window)
         if held.sum() >= 6 and np.ptp(time[held]) > 0.5 * window:
             found.append((start + 0.5 * window, float(np.polyfit(time[held], front[held], 1)[0])))
-    middles, speeds = np.array(found).reshape(-1, 2).T
+    middles, speeds = np.array(found or [(np.nan, np.nan)]).T
     return middles, speeds
