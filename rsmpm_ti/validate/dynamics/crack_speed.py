@@ -2,11 +2,12 @@
 
 A strip between two grips that are drawn apart and then held; a crack runs from a notch through what is then stored. The
 grips leave lateral motion free, so that no crack starts at their corners. The energy that a long crack finds, per area
-W = E eps^2 H/2 in a strip of height H (Rice 1967, J. Appl. Mech. 34:248), is as many times G_f as a run is given. A crack in tension stays below the Rayleigh speed (Freund 1990,
-sec. 7.4). Measured on PMMA: at 330 +- 30 m/s its speed begins to swing, its mean acceleration falls sharply and a
-pattern forms on the faces (Fineberg, Gross, Marder & Swinney 1992, Phys. Rev. B 45:5146), where micro-branches begin.
-Predicted from E, nu, density, K_Ic and sigma_t of the shelf's PMMA; the strength is what the cells carry
-(tough_plate.py). Plates have the size of Bleyer, Roux-Langlois & Molinari (2017), Int. J. Fract. 204:79.
+E eps^2 H/2 in a strip of height H (Rice 1967, J. Appl. Mech. 34:248), is as many times G_f as a run is given. A crack
+in tension stays below the Rayleigh speed (Freund 1990, sec. 7.4). Measured on PMMA: at 330 +- 30 m/s its speed begins
+to swing, its mean acceleration falls sharply, and a pattern forms on its faces (Fineberg, Gross, Marder & Swinney 1992,
+Phys. Rev. B 45:5146). Predicted from E, nu, density, K_Ic and sigma_t of the shelf's PMMA; the strength is what the
+cells carry (tough_plate.py). The strip has the size of those of Bleyer, Roux-Langlois & Molinari (2017), Int. J. Fract.
+204:79.
 """
 
 import math
@@ -98,7 +99,7 @@ class Ran:
         return self.result.fracture.rayleigh_speed
 
     def speeds(self) -> tuple[np.ndarray, np.ndarray]:
-        """Times [s] and speeds of its front along the strip [m/s], until it is a quarter of the height from the far edge."""
+        """Times [s] and speeds of its front along the strip [m/s], up to a quarter of the height from the far edge."""
         time, x = self.places
         way = x[:, 0] - NOTCH
         front = np.maximum.accumulate(way)
