@@ -37,11 +37,11 @@ ENERGY = SHELF.toughness**2 / PMMA.E
 """Plane stress [J/m^2]."""
 
 LENGTH, HEIGHT, NOTCH = 32.0 * mm, 16.0 * mm, 4.0 * mm
-DX, QUICK_DX = 0.125 * mm, 0.25 * mm
+DX, QUICK_DX = 0.16 * mm, 0.25 * mm
 SLIT_CELLS = 3.0
 """Width of the notch [cells], by which its faces part."""
 
-LOADS, QUICK_LOADS = (1.5, 2.5, 4.0), (2.0,)
+LOADS, QUICK_LOADS = (1.5, 3.0), (2.0,)
 """Energy that a long crack finds, over G_f."""
 
 DRAWN, T_END = 12e-6, 50e-6
@@ -52,6 +52,10 @@ WINDOW = 5e-6
 
 ONSET, ONSET_BAND = 330.0, (300.0, 360.0)
 FINEBERG = "Fineberg, Gross, Marder & Swinney 1992, PRB 45:5146: 330 +- 30 m/s"
+
+LIMIT = "theory: a crack in tension stays below c_R (Freund 1990, sec. 7.4)"
+JUMPS = "rock cracks ahead of the tip, and the tip runs into it: the front jumps"
+PLANE = "measured are the first micro-branches, which do not reach through the plate; a model of its plane has none"
 
 BIN, GAP, LASTING = 0.5 * mm, 0.8 * mm, 4
 """A crack has branched where failures of so many columns of this width have a gap across, in a row."""
@@ -142,15 +146,17 @@ class Ran:
 def _rows(ran: Ran) -> list[Comparison]:
     name, (place, angle) = f"{ran.load:g} G_f", ran.branch()
     _, speeds = ran.speeds()
+    mean, largest = float(speeds.mean()) / ran.rayleigh, float(speeds.max()) / ran.rayleigh
     rows = [
-        compare(f"{name}: largest speed over c_R", "1", 1.0, float(speeds.max()) / ran.rayleigh, 1.0,
-                "theory: a crack in tension stays below c_R (Freund 1990, sec. 7.4)", band=(0.0, 1.0)),
+        compare(f"{name}: mean speed over c_R", "1", 1.0, mean, 0.0, LIMIT, band=(0.0, 1.0)),
+        compare(f"{name}: largest speed over c_R", "1", 1.0, largest, 0.0, LIMIT, band=(0.0, 1.0), beyond=JUMPS),
         predict(f"{name}: speed over the second half, over c_R", "1", ran.terminal / ran.rayleigh, "rises with load"),
-    ]  # fmt: skip
+        predict(f"{name}: branches", "1", float(math.isfinite(place)), "1 yes, 0 no"),
+    ]
     if math.isfinite(place):
         rows += [
             compare(f"{name}: speed where it first branches", "m/s", ONSET, ran.speed_at(place), 0.1, FINEBERG,
-                    band=ONSET_BAND),
+                    band=ONSET_BAND, beyond=PLANE),
             predict(f"{name}: angle between the branches", "degrees", angle, "over 3 mm"),
         ]  # fmt: skip
     return rows

@@ -101,6 +101,14 @@ class Struck:
         end = way[np.argmax(np.linalg.norm(way, axis=1))]
         return math.degrees(math.atan2(end[1], end[0]))
 
+    @property
+    def planes(self) -> float:
+        """Median angle of the crack's own planes, which stand across the tension that broke them [degrees]."""
+        normals = self.result.events.crack_angle
+        if self.crack is None or normals is None:
+            return math.nan
+        return float(np.median(np.degrees(normals[self.crack.events]) % 180.0)) - 90.0
+
     def speeds(self) -> tuple[np.ndarray, np.ndarray]:
         """Times [s] and speeds of its front over the Rayleigh speed."""
         if self.crack is None:
@@ -117,7 +125,7 @@ def _rows(struck: Struck, law: str) -> list[Comparison]:
                 absolute=True),
         compare(f"{law}: angle over its first 3 mm", "degrees", ANGLE, struck.first_angle, 5.0, TOLD, band=BAND,
                 absolute=True),
-        compare(f"{law}: largest speed over c_R", "1", 1.0, float(speeds.max()), 1.0,
+        compare(f"{law}: largest speed over c_R", "1", 1.0, float(speeds.max()), 0.0,
                 "theory: a crack in tension stays below c_R (Freund 1990, sec. 7.4)", band=(0.0, 1.0)),
         predict(f"{law}: mean speed over c_R", "1", float(speeds.mean()), "phase fields find 0.6 to 0.75 at most"),
     ]  # fmt: skip
@@ -138,7 +146,7 @@ def kalthoff(full: bool) -> Outcome:
         axes = figure.subplots(1, len(runs) + 1)
         for plate, (law, struck) in zip(axes, runs.items(), strict=False):
             snapshot = struck.result.snapshot
-            plate.scatter(*(snapshot.x.T / mm), c=snapshot.damage, s=(72.0 * dx / SIZE) ** 2, cmap="magma_r", lw=0)
+            plate.scatter(*(snapshot.x.T / mm), c=snapshot.damage, s=(150.0 * dx / SIZE) ** 2, cmap="magma_r", lw=0)
             for angle in BAND:
                 way = 55.0 * np.array([math.cos(math.radians(angle)), math.sin(math.radians(angle))])
                 plate.plot([NOTCH / mm, NOTCH / mm + way[0]], [AXIS / mm, AXIS / mm + way[1]], "c--", lw=0.9)
