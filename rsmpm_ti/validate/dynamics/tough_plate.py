@@ -9,9 +9,13 @@ then is too early. No result enters: the strength follows from E, G_f and the ce
 """
 
 import math
+import warnings
 
 import numpy as np
 
+from rsmpm_ti import simulate
+from rsmpm_ti.errors import RockWarning
+from rsmpm_ti.results.result import Result
 from rsmpm_ti.rock.criteria import MohrCoulomb
 from rsmpm_ti.rock.elasticity import Hooke
 from rsmpm_ti.rock.nonlocal_mean import MIN_CELLS, Nonlocal
@@ -19,6 +23,7 @@ from rsmpm_ti.rock.rock import Rock
 from rsmpm_ti.rock.sheet.data_sheet import SPAN
 from rsmpm_ti.rock.smeared_crack import Directional
 from rsmpm_ti.rock.softening import LinearSoftening
+from rsmpm_ti.spec.scene import Scene
 
 OUT_OF_REACH = 10.0
 """Cohesion over tensile strength: what these solids do in shear, which is to yield, is not modelled."""
@@ -54,6 +59,13 @@ def brittle(*, density: float, elasticity: Hooke, strength: float) -> Rock:
 
 def _in_tension(strength: float) -> MohrCoulomb:
     return MohrCoulomb(cohesion=OUT_OF_REACH * strength, friction_angle=0.0, tensile_strength=strength)
+
+
+def run_of(scene: Scene) -> Result:
+    """A run of such a solid, without the warnings that it is no rock."""
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", RockWarning)
+        return simulate(scene, threads=1)
 
 
 def front_speed(time: np.ndarray, way: np.ndarray, window: float) -> tuple[np.ndarray, np.ndarray]:
