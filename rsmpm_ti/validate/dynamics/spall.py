@@ -38,7 +38,7 @@ from rsmpm_ti.validate.comparison import Comparison, compare
 from rsmpm_ti.validate.experiment import Experiment, Input
 
 FLYER, PLATE = 20.0 * mm, 60.0 * mm
-"""Thicknesses h and L: 40 and 80 cells of h."""
+"""Thicknesses h and L: 80 cells to h, in the quick tier 40."""
 
 ABOVE = 2.0
 """Impact speed over the least that spalls: a pressure of 2 sigma_t, far below what breaks confined rock in shear."""
@@ -61,7 +61,6 @@ SOURCE = "acoustic theory: Meyers 1994, Dynamic Behavior of Materials, ch. 17; A
 
 
 RINGS = "fronts of a step ring (wave in docs/verification.md): what the first peak adds breaks rock off the place"
-LATE = "the mean over 1 mm keeps the plane's strength up longer than sigma_t (1 - w sigma_t/(2 G_f)) does"
 
 
 @dataclass
@@ -162,15 +161,15 @@ def scab_speed(energy: float) -> float:
     return 1.0 - impulse / (LAB.density * FLYER * SPEED)
 
 
-def _rows(spalled: Spalled, law: str, energy: float, *, place: str = "", scab: str = "") -> list[Comparison]:
-    """place, scab: why these cannot come nearer."""
+def _rows(spalled: Spalled, law: str, energy: float, *, place: str = "") -> list[Comparison]:
+    """place: why that cannot come nearer."""
     momentum = "momentum, less the impulse of the crack while it opens: see the module"
     return [
         compare(f"{law}: depth of the first scab", "mm", FLYER / mm, spalled.place / mm, 0.03, SOURCE, beyond=place),
         compare(f"{law}: time of its first loss of strength", "us", 1e6 * MEETING, 1e6 * spalled.onset, 0.03, SOURCE),
         compare(f"{law}: velocity of the free face before", "m/s", SPEED, spalled.before, 0.03, SOURCE),
         compare(f"{law}: velocity of the scab over that of the face", "1", scab_speed(energy),
-                spalled.scab / spalled.before, 0.03, momentum, beyond=scab),
+                spalled.scab / spalled.before, 0.03, momentum),
     ]  # fmt: skip
 
 
@@ -178,7 +177,7 @@ def spall(full: bool) -> Outcome:
     dx = DX if full else QUICK_DX
     lab = Spalled.of(LAB, dx)
     rows = [
-        *_rows(lab, "with fracture energy", ENERGY, scab=LATE),
+        *_rows(lab, "with fracture energy", ENERGY),
         compare("with fracture energy: strength read from the pull-back", "MPa", STRENGTH / MPa, lab.pull_back / MPa,
                 0.10, SOURCE),
         compare("with fracture energy: what the crack cost per area", "J/m^2", ENERGY, lab.spent, 0.10, "given: G_f_I"),
