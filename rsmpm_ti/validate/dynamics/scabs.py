@@ -44,7 +44,7 @@ SCABS = math.floor(PEAK / STRENGTH)
 VELOCITIES = [(2.0 * PEAK - (2 * k + 1) * STRENGTH) / IMPEDANCE for k in range(SCABS)]
 """Of the scabs, the first first [m/s]."""
 
-RINGS = "the pulse's sharp front rings by a quarter of P, 0.9 sigma_t, and that breaks rock between the scabs"
+RINGS = "a sharp front rings, a step by 27 % (docs/references.md, section 2), and that breaks rock between the scabs"
 SOURCE = "acoustic theory: Kolsky 1963, Stress Waves in Solids, ch. VIII; Meyers 1994, ch. 17"
 
 

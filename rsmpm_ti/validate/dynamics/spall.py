@@ -59,8 +59,9 @@ MEETING = (PLATE + FLYER) / SPEED_OF_SOUND
 
 SOURCE = "acoustic theory: Meyers 1994, Dynamic Behavior of Materials, ch. 17; Antoun et al. 2003, Spall Fracture"
 
-
-RINGS = "fronts of a step ring (wave in docs/verification.md): what the first peak adds breaks rock off the place"
+RINGS = (
+    "fronts of a step ring: unbroken rock is pulled by 1.4 rho c v/2, beside the place (docs/references.md, section 2)"
+)
 
 
 @dataclass
