@@ -85,7 +85,7 @@ def strip(load: float, dx: float) -> Scene:
 
 @dataclass(frozen=True)
 class Ran:
-    """A run, and the crack that left the notch."""
+    """A run, and its crack: the largest, since small ones begin at the notch's other corner."""
 
     load: float
     result: Result
@@ -93,7 +93,7 @@ class Ran:
     @property
     def places(self) -> tuple[np.ndarray, np.ndarray]:
         """Times [s] and places [m] of the failures of the crack, in order of time; none where it did not run."""
-        crack = next((c for c in self.result.fracture.cracks if c.origin.tip == "0+"), None)
+        crack = max(self.result.fracture.cracks, key=lambda crack: crack.particles, default=None)
         rows = np.zeros(0, dtype=int) if crack is None else crack.events
         return self.result.events.time[rows], self.result.events.x[rows]
 
