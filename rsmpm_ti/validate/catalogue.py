@@ -1,9 +1,10 @@
 """Every case of validation by name."""
 
+from rsmpm_ti.validate.dynamics import crack_speed, kalthoff, scabs, spall
 from rsmpm_ti.validate.examples import flawed, mode_two, paper
 from rsmpm_ti.validate.experiment import Experiment
 from rsmpm_ti.validate.strength import carrara, sigma_2, westerly, zigong
 
-MODULES = (westerly, zigong, carrara, sigma_2, paper, flawed, mode_two)
+MODULES = (westerly, zigong, carrara, sigma_2, spall, scabs, kalthoff, crack_speed, paper, flawed, mode_two)
 
 CASES: dict[str, Experiment] = {case.name: case for module in MODULES for case in module.CASES}

@@ -31,7 +31,7 @@ class Comparison(Row):
 
     @property
     def passed(self) -> bool:
-        return self.inside or super().passed
+        return self.tolerance == math.inf or self.inside or super().passed
 
     @property
     def distance(self) -> str:
