@@ -1,8 +1,9 @@
 """Every case of validation by name."""
 
 from rsmpm_ti.validate.experiment import Experiment
+from rsmpm_ti.validate.fracture import gregoire
 from rsmpm_ti.validate.strength import westerly
 
-MODULES = (westerly,)
+MODULES = (westerly, gregoire)
 
 CASES: dict[str, Experiment] = {case.name: case for module in MODULES for case in module.CASES}
