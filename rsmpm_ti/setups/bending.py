@@ -57,12 +57,12 @@ def bending_test(
     depth, span: of the beam and between its supports [m], span 4 depth by default; notch: its depth [m], its faces
     notch_width apart, 3 dx by default, its end rounded; deflection_end: of the upper roller [m]; speed: its own [m/s],
     which it reaches in a third of the time to the peak. deflection_peak: its deflection there [m], `peak_deflection` by
-    default, which is too little where strength is lost over more than the ligament. time_scale: by default such that the
-    load comes slowly (`setups/slow.py`). servo: None where a beam breaks slowly by itself.
+    default, which is too little where strength is lost over more than the ligament. time_scale: by default such that
+    the load comes slowly (`setups/slow.py`). servo: None where a beam breaks slowly by itself.
 
     The nominal stress is 3 P S / (2 b^2), that of beam theory at the lower side, with the ligament b over the notch.
-    A notched beam has the gauge `mouth`, its crack mouth opening [m], over `gauge_length` [m], notch_width and two cells
-    by default. Raises SceneError.
+    A notched beam has the gauge `mouth`, its crack mouth opening [m], over `gauge_length` [m], by default notch_width
+    and two cells. Raises SceneError.
     """
     span = 4.0 * depth if span is None else span
     width = NOTCH * dx if notch_width is None else notch_width

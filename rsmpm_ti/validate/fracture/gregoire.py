@@ -119,9 +119,7 @@ def rows_of(got: Curve, theory: Curve, band: Band) -> list[Comparison]:
     for opening in (0.01, 0.1, 0.2):
         bounds = (float(low.at(opening * mm)), float(high.at(opening * mm)))
         rows.append(held(f"load at {opening:g} mm", "N", bounds, float(got.at(opening * mm)), 0.1))
-    rows.append(
-        held(f"energy to {end / mm:.2f} mm", "J", (low.energy(end), high.energy(end)), got.energy(end), 0.1)
-    )
+    rows.append(held(f"energy to {end / mm:.2f} mm", "J", (low.energy(end), high.energy(end)), got.energy(end), 0.1))
     return rows
 
 
@@ -136,7 +134,7 @@ def whole_curve(_full: bool) -> Outcome:
                 "cohesive crack by finite elements",
                 beyond="the mean is over two cells and the notch three cells wide"),
     ]  # fmt: skip
-    rows += [predict(f"peak load, dx {dx / mm:g} mm", "N", c.peak, "coarser") for dx, c in curves.items() if dx > finest]
+    rows += [predict(f"peak load, dx {d / mm:g} mm", "N", c.peak, "coarser") for d, c in curves.items() if d > finest]
 
     def draw(figure):
         axes = figure.subplots()
@@ -164,6 +162,7 @@ CASES = (
             Input("density", 2346.0, "kg/m^3", SOURCE),
             Input("tensile_strength", CONCRETE_STRENGTH, "Pa", SOURCE),
             Input("G_f_I", CONCRETE_ENERGY, "J/m^2", SOURCE),
+            Input("averaging_length", 2.0 * CELLS[-1], "m", "two cells, the least that the law allows"),
         ),
         judged=(DATUM,),
         quick=False,
