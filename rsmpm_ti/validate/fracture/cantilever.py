@@ -109,8 +109,8 @@ def rock_of() -> Rock:
 
 def scene_of(rock: Rock, beams: Beams) -> Scene:
     width, room, pin = 3.0 * DX, 4.0 * DX, PIN * DX
-    tip = INSET + NOTCH
-    slit = Slit(centre=(0.5 * (tip - width), 0.0), length=tip + width, width=width, angle=0.0, rounded=True)
+    tip, outside = INSET + NOTCH, 0.5 * width  # so that its other end, which is rounded too, is no part of an arm
+    slit = Slit(centre=(0.5 * (tip - outside), 0.0), length=tip + outside, width=width, angle=0.0, rounded=True)
     # first swing of a clamped beam, 1.875^2 sqrt(E' I/(rho A))/a^2: Blevins (1979), table 8-1
     swing = 2.0 * math.pi * (NOTCH + ROOT * ARM) ** 2 / (3.516 * ARM * math.sqrt(beams.modulus / (12.0 * rock.density)))
     duration = beams.begins / (2.0 * SPEED)

@@ -11,6 +11,11 @@ else. Nothing is fitted. What had to be chosen was chosen before any run:
 - The mean stress is over two cells, the least that the law allows, and the notch is three cells wide. Both are too much
   for a ligament of 25 mm: `cohesive_reference.py` gives what is left of the prediction without them.
 
+What is found: the source's numbers themselves overstate these beams, since a cohesive crack of the same E, sigma_t and
+G_f costs 1.6 times what they did, and leaves the band at the peak. G_f of the source is not what a ligament of 25 mm
+costs: near a face a crack costs less (Duan, Hu & Wittmann 2007, Eng. Fract. Mech. 74:87). From 0.002 to 0.022 mm, where
+the beams peak, the cohesive crack is inside the band.
+
 The beam is 140 mm long, not 175: nothing acts beyond its supports. No servo: it slows a beam while it costs energy,
 which this one does steadily.
 """
@@ -34,7 +39,7 @@ THICKNESS = 50.0 * mm
 CELLS = (2.0 * mm, 1.0 * mm)
 """Sizes of a cell [m]; the last is held against the experiment."""
 
-PACE, END = 0.0127 * mm, 0.126 * mm
+PACE, END = 0.0127 * mm, 0.133 * mm
 """Deflections of the upper roller: of an elastic beam at the peak load of the cohesive crack, twice as much as where
 beam theory reaches the strength; and at an opening of 0.2 mm."""
 
@@ -130,9 +135,10 @@ def whole_curve(_full: bool) -> Outcome:
     rows = rows_of(curves[finest], theory, band)
     rows += [
         predict("openings inside the band, cohesive crack", "1", theory.inside(band), "by finite elements"),
-        compare("peak load, cohesive crack measured by elements", "N", theory.peak, curves[finest].peak, 0.05,
+        compare("peak load against that of the cohesive crack", "N", theory.peak, curves[finest].peak, 0.05,
                 "cohesive crack by finite elements",
-                beyond="the mean is over two cells and the notch three cells wide"),
+                beyond="the mean over two cells and the notch of three are not short against the ligament; halving the "
+                "cell halves it or more"),
     ]  # fmt: skip
     rows += [predict(f"peak load, dx {d / mm:g} mm", "N", c.peak, "coarser") for d, c in curves.items() if d > finest]
 
