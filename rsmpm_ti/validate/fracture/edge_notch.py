@@ -37,7 +37,7 @@ TIME_SCALE, BEYOND = 4.0, 1.3
 """Strain at the end over that at which a whole plate reaches sigma_t."""
 
 SOURCE = "cohesive crack of the same rock by finite elements"
-WHY = "the mean, over two cells, sees the notch's tip and its zone blurred: nearly half as far off with half the cell"
+WHY = "the mean over two cells blurs the tip and the zone at it: with half the cell it is nearly half as far off"
 
 ZONE = PLATE.plane_modulus * ROCK_ENERGY / ROCK_STRENGTH**2
 """l_ch = E' G_f/sigma_t^2 [m]."""
