@@ -43,19 +43,26 @@ ZONE = PLATE.plane_modulus * ROCK_ENERGY / ROCK_STRENGTH**2
 """l_ch = E' G_f/sigma_t^2 [m]."""
 
 
+def notches(depth: float, dx: float) -> tuple[Slit, ...]:
+    """The notch half way up the plate, with a round end; none where it has no depth."""
+    if not depth:
+        return ()
+    width = 3.0 * dx
+    below = 0.5 * width  # the slit's other end, which is rounded too, is no part of the plate
+    middle = (0.5 * (depth - below), PLATE.length)
+    return (Slit(centre=middle, length=depth + below, width=width, angle=0.0, rounded=True),)
+
+
 def strength(notch: float, dx: float) -> float:
     """Nominal stress at the peak [Pa]."""
-    width, middle, height = 3.0 * dx, PLATE.length, 2.0 * PLATE.length
-    below = 0.5 * width  # the slit's other end, which is rounded too, is no part of the plate
-    slit = Slit(centre=(0.5 * (notch - below), middle), length=notch + below, width=width, angle=0.0, rounded=True)
     scene = uniaxial_test(
         title="Plate with an edge notch in tension",
         rock=lab_rock(length=2.0 * dx),
         dx=dx,
         width=PLATE.depth,
-        height=height,
+        height=2.0 * PLATE.length,
         room=4.0 * dx,
-        flaws=(slit,) if notch else (),
+        flaws=notches(notch, dx),
         speed=-2.5e-3,
         strain_end=-BEYOND * ROCK_STRENGTH / PLATE.plane_modulus,
         time_scale=TIME_SCALE,
