@@ -25,6 +25,9 @@ REACH = 4.0
 """Deflection at the end over that at which the toughness is expected to be reached: a beam of two characteristic
 lengths is then broken through."""
 
+SERVO = Servo()
+"""It slows the upper roller while the beam breaks."""
+
 OVERHANG = 0.15
 """Length of the beam beyond each support, over its depth."""
 
@@ -39,9 +42,12 @@ def bending_test(
     notch: float = 0.0,
     notch_width: float | None = None,
     deflection_end: float | None = None,
+    deflection_peak: float | None = None,
+    gauge_length: float | None = None,
     seeding: Lattice | Jittered | None = None,
     speed: float = 2e-3,
     time_scale: float | None = None,
+    servo: Servo | None = SERVO,
     cfl: float = 1.0,
     output: Output | None = None,
 ) -> Scene:
@@ -50,11 +56,13 @@ def bending_test(
 
     depth, span: of the beam and between its supports [m], span 4 depth by default; notch: its depth [m], its faces
     notch_width apart, 3 dx by default, its end rounded; deflection_end: of the upper roller [m]; speed: its own [m/s],
-    which it reaches in a third of the time to the peak. time_scale: by default such that the load comes slowly
-    (`setups/slow.py`).
+    which it reaches in a third of the time to the peak. deflection_peak: its deflection there [m], `peak_deflection` by
+    default, which is too little where strength is lost over more than the ligament. time_scale: by default such that
+    the load comes slowly (`setups/slow.py`). servo: None where a beam breaks slowly by itself.
 
     The nominal stress is 3 P S / (2 b^2), that of beam theory at the lower side, with the ligament b over the notch.
-    A notched beam has the gauge `mouth`, its crack mouth opening [m]. Raises SceneError.
+    A notched beam has the gauge `mouth`, its crack mouth opening [m], over `gauge_length` [m], by default notch_width
+    and two cells. Raises SceneError.
     """
     span = 4.0 * depth if span is None else span
     width = NOTCH * dx if notch_width is None else notch_width
@@ -69,11 +77,11 @@ def bending_test(
         flaws = (
             Slit(centre=(0.0, 0.5 * (notch - below)), length=notch + below, width=width, angle=90.0, rounded=True),
         )
-        foot = 0.5 * width + dx
+        foot = 0.5 * width + dx if gauge_length is None else 0.5 * gauge_length
         gauges = (Gauge(name="mouth", a=(-foot, 0.0), b=(foot, 0.0), reads="opening"),)
     expected = peak_deflection(rock, depth=depth, span=span, notch=notch)
     end = REACH * expected if deflection_end is None else deflection_end
-    duration = expected / speed
+    duration = (expected if deflection_peak is None else deflection_peak) / speed
     scale = time_scale or slow_time_scale(duration, period(rock, depth=depth, span=span, notch=notch))
     rollers = (
         *(
@@ -88,7 +96,7 @@ def bending_test(
         bodies=(Body(region=Difference(whole=beam, removed=flaws) if flaws else beam, seeding=seeding or Lattice()),),
         rock=rock,
         loading=Loading(
-            boundaries=rollers, start=Ramp(time=duration / 3.0), time_scale=scale, servo=Servo(),
+            boundaries=rollers, start=Ramp(time=duration / 3.0), time_scale=scale, servo=servo,
             local_damping=AUTO_DAMPING, cell=LoadCell(gauges=gauges), width=2.0 * ligament**2 / (3.0 * span),
         ),
         schedule=Schedule(strain_end=end / depth, cfl=cfl, stop_after_drop=0.97),

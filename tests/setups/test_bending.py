@@ -61,3 +61,13 @@ def test_notch_through_the_beam_is_refused():
         bending_test(title="t", rock=ROCK, dx=DX, depth=50e-3, notch=50e-3)
     with pytest.raises(SceneError, match="notch = 0.0 is refused"):
         semicircular_test(title="t", rock=ROCK, dx=DX, notch=0.0)
+
+
+def test_gauge_and_pace_follow_what_they_are_told():
+    told = bending_test(title="t", rock=ROCK, dx=DX, depth=40e-3, notch=20e-3, gauge_length=20e-3, servo=None)
+    (gauge,) = told.loading.cell.gauges
+    assert gauge.length == pytest.approx(20e-3) and told.loading.servo is None
+    peak = peak_deflection(ROCK, depth=40e-3, span=160e-3, notch=20e-3)
+    slower = bending_test(title="t", rock=ROCK, dx=DX, depth=40e-3, notch=20e-3, deflection_peak=3.0 * peak)
+    assert slower.loading.start.time == pytest.approx(3.0 * told.loading.start.time)
+    assert slower.schedule.strain_end == told.schedule.strain_end, "where it ends is another matter"

@@ -32,12 +32,12 @@ def draw_field(panels, error: FieldError, limit: float, title: str) -> None:
 
 def draw_growth(panels, result: Result, scene: Scene, instants: list[tuple[float, float]]) -> None:
     """Failed particles at each instant (time [s], nominal stress [Pa]) in the specimen's outline."""
-    events, particles = result.events, scene.particles()
+    events = result.events
     low, high = scene.bodies[0].region.bounds() / mm
     colours = {TENSION: "tab:red", SHEAR: "tab:blue"}
     slit = slits_of(scene.bodies[0].region)[0]
     for axes, (time, stress) in zip(panels, instants, strict=True):
-        axes.scatter(*(particles.x / mm).T, s=0.3, color="0.88", linewidths=0, rasterized=True)
+        axes.scatter(*(result.snapshot.x / mm).T, s=0.3, color="0.88", linewidths=0, rasterized=True)
         for mode, colour in colours.items():
             here = (events.time <= time) & (events.mode == mode)
             axes.scatter(*(events.x[here] / mm).T, s=1.2, color=colour, linewidths=0, rasterized=True)

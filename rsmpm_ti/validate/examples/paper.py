@@ -72,7 +72,7 @@ def _grown(name: str) -> Grown:
 def _stated(grown: Grown, particles: int) -> list[Comparison]:
     """What the paper says of one example in words or numbers."""
     name, events = grown.name, grown.result.events
-    count, first = float(grown.scene.particles().x.shape[0]), int(events.mode[np.argmin(events.time)])
+    count, first = float(len(grown.result.snapshot.x)), int(events.mode[np.argmin(events.time)])
     return [
         compare(f"{name}: first failure from the flaw's tip", "mm", 0.0, grown.from_tip() / mm, 1.0, PAPER,
                 absolute=True),
