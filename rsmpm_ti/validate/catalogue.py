@@ -7,7 +7,8 @@ from rsmpm_ti.validate.fracture import edge_notch, gregoire
 from rsmpm_ti.validate.strength import carrara, sigma_2, westerly, zigong
 
 MODULES = (
-    westerly, zigong, carrara, sigma_2, gregoire, edge_notch, spall, scabs, kalthoff, crack_speed, paper, flawed, mode_two,
+    flawed, mode_two, westerly, zigong, carrara, sigma_2, gregoire, edge_notch, spall, scabs, kalthoff, crack_speed,
+    paper,
 )  # fmt: skip
 
 CASES: dict[str, Experiment] = {case.name: case for module in MODULES for case in module.CASES}
