@@ -12,6 +12,7 @@ from rsmpm_ti.validate.catalogue import CASES, MODULES
 from rsmpm_ti.validate.comparison import Comparison, compare, predict
 from rsmpm_ti.validate.data.tables import FOLDER, gregoire, strengths
 from rsmpm_ti.validate.experiment import Experiment, Input
+from rsmpm_ti.validate.strength.fits import hoek_brown, mohr_coulomb
 
 PINNED = {
     "westerly": {"strength under 17 MPa": -0.019},
@@ -22,19 +23,49 @@ PINNED = {
         "radial stress at an axial one of -6.9 MPa, hybrid": 0.029,
         "differential stress under 90 MPa, hybrid": 0.002,
     },
+    "edge_notch": {"strength, notch of 2.03 l_ch": 0.197},
+    "spall": {
+        "with fracture energy: depth of the first scab": 0.006,
+        "with fracture energy: time of its first loss of strength": 0.030,
+        "with fracture energy: velocity of the free face before": -0.008,
+        "with fracture energy: velocity of the scab over that of the face": -0.068,
+        "with fracture energy: strength read from the pull-back": -0.153,
+        "with fracture energy: what the crack cost per area": 0.306,
+    },
+    "scabs": {
+        "scabs": 1.333,
+        "thickness of scab 1": -0.689,
+        "velocity of scab 1": 0.113,
+        "thickness of scab 2": -0.250,
+        "velocity of scab 2": 0.356,
+        "thickness of scab 3": -0.388,
+        "velocity of scab 3": 1.078,
+    },
+    "kalthoff": {
+        "with fracture energy: angle of the crack, tip to end": -13.2,
+        "with fracture energy: angle over its first 3 mm": -6.5,
+        "with fracture energy: largest speed over c_R": -0.390,
+    },
+    "crack_speed": {"2 G_f: mean speed over c_R": -0.217, "2 G_f: largest speed over c_R": 0.075},
 }
-"""Distances of the quick tier from experiment. They are pins, so that a change of the solver that moves one is seen."""
+"""Distances of the quick tier from what judges it, of its coarse cells, misses among them: docs/validation.md has those
+of the full one. They are pins, so that a change of the solver that moves one is seen."""
 
-MOVED = 0.01
-"""A pinned distance may move by this: a specimen of twelve cells, and machines that add in another order."""
+MOVED = {"westerly": 0.01, "zigong": 0.01, "carrara": 0.01, "edge_notch": 0.02}
+"""By how much a pinned distance may move: a uniform state, and a peak, to round-off and the time step it is read in."""
+
+MOVED_BROKEN, MOVED_DEGREES = 0.1, 3.0
+"""The same where the number is read from cracks, which round-off may turn by a cell; and of an angle [degrees]."""
 
 
 @pytest.mark.parametrize("name", [name for name, case in CASES.items() if case.quick])
+@pytest.mark.thorough("zigong", "edge_notch", "scabs", "kalthoff", "crack_speed")
 def test_distance_to_experiment_is_the_one_that_was_told(name, tmp_path):
-    rows = run_case(CATALOGUE, name, full=False, out=tmp_path, threads=1)
+    rows = [row for row in run_case(CATALOGUE, name, full=False, out=tmp_path, threads=1) if row.tolerance < math.inf]
     assert {row.quantity for row in rows} == set(PINNED[name])
     for row in rows:
-        assert row.error == pytest.approx(PINNED[name][row.quantity], abs=MOVED), row.quantity
+        moved = MOVED_DEGREES if row.unit == "degrees" else MOVED.get(name, MOVED_BROKEN)
+        assert row.error == pytest.approx(PINNED[name][row.quantity], abs=moved), row.quantity
         assert len(row.reason) > 3, "every measured number has its source beside it"
     assert (tmp_path / f"{name}.png").stat().st_size > 10_000
     judged = {key for row in rows for key in row.datum.split(", ") if key}
@@ -62,19 +93,20 @@ def test_case_that_would_judge_its_own_fit_cannot_be_made():
 def test_keys_are_lines_of_the_tables():
     for case in CASES.values():
         for key in (*case.judged, *(key for given in case.inputs for key in given.fitted_on)):
-            file, line = key.rsplit(":", 1)
-            assert 2 <= int(line) <= len((FOLDER / file).read_text(encoding="utf-8").splitlines())
+            file, _, line = key.partition(":")  # a whole table has no line
+            assert 2 <= int(line or 2) <= len((FOLDER / file).read_text(encoding="utf-8").splitlines())
 
 
-def test_a_changed_datum_changes_what_is_fitted_to_it(monkeypatch):
-    """The declared inputs are made of the data, not typed beside them."""
-    from rsmpm_ti.validate.strength.fits import mohr_coulomb
-
+def test_a_line_is_made_of_the_points_it_is_given():
     points = strengths("Westerly granite", "compression")
     cohesion, friction = mohr_coulomb(points[:2])
     N = math.tan(math.radians(45.0 + 0.5 * friction)) ** 2
     assert (385.0 - 256.0) / 13.0 == pytest.approx(N, rel=1e-9)
     assert 2.0 * cohesion * math.sqrt(N) == pytest.approx(256e6, rel=1e-9)
+    strength, m = hoek_brown(points[:2])
+    for point in points[:2]:
+        added = strength * math.sqrt(m * point.sigma_3 / strength + 1.0)
+        assert point.sigma_3 + added == pytest.approx(point.sigma_1, rel=1e-9)
 
 
 @pytest.mark.parametrize(

@@ -54,7 +54,7 @@ ANGLE, BAND = 70.0, (65.0, 75.0)
 NARROW = 10.0
 """Of the wedge that a crack does not exclude [degrees]: a look at what its 25 degrees do, which nothing judges."""
 
-WANDERS = "cracks may leave their own planes by 25 degrees (wedge, rock/nonlocal_mean.py): kept to 10 it is 69 at 46 us"
+WANDERS = "cracks may leave their own planes by 25 degrees (wedge, rock/nonlocal_mean.py): kept to 10 it is 75, coarse"
 BRANCHES = "no energy is asked for, so that the crack branches, and its branches lean"
 PLANES = "across the tension that broke them; a crack that follows them goes their way"
 TOLD = "Kalthoff & Winkler 1988: 'approximately 70 degrees' (Batra & Ravisankar 2000, IJF 105:161)"
