@@ -33,7 +33,7 @@ def draw_field(panels, error: FieldError, limit: float, title: str) -> None:
 def draw_growth(panels, result: Result, scene: Scene, instants: list[tuple[float, float]]) -> None:
     """Failed particles at each instant (time [s], nominal stress [Pa]) in the specimen's outline."""
     events = result.events
-    low, high = scene.bodies[0].region.bounds() / mm
+    low, high = np.array(scene.bodies[0].region.bounds()) / mm
     colours = {TENSION: "tab:red", SHEAR: "tab:blue"}
     slit = slits_of(scene.bodies[0].region)[0]
     for axes, (time, stress) in zip(panels, instants, strict=True):

@@ -106,8 +106,8 @@ def page(full: bool) -> Outcome:
         rows.append(predict(f"{name}: nominal stress at the first failure", "MPa", onset, PAPER + ": no number"))
 
     def draw(figure):
-        figure.set_size_inches(15.0, 19.0)
-        top, middle, bottom = figure.subfigures(3, 1, height_ratios=(1.25, 1.25, 0.8))
+        figure.set_size_inches(15.0, 15.0)
+        top, middle, bottom = figure.subfigures(3, 1, height_ratios=(0.75, 1.0, 0.6))
         clouds = top.subplots(1, 6, width_ratios=(1, 1, 1, 1.6, 1.6, 1.6))
         draw_field(clouds[:3], fields["cube"], 1.0, "example 1")
         draw_field(clouds[3:], fields["disc"], 3.0, "example 2")
