@@ -59,7 +59,7 @@ MOVED_BROKEN, MOVED_DEGREES = 0.1, 3.0
 
 
 @pytest.mark.parametrize("name", [name for name, case in CASES.items() if case.quick])
-@pytest.mark.thorough("zigong", "edge_notch", "scabs", "kalthoff", "crack_speed")
+@pytest.mark.thorough("westerly", "zigong", "edge_notch", "scabs", "kalthoff", "crack_speed")
 def test_distance_to_experiment_is_the_one_that_was_told(name, tmp_path):
     rows = [row for row in run_case(CATALOGUE, name, full=False, out=tmp_path, threads=1) if row.tolerance < math.inf]
     assert {row.quantity for row in rows} == set(PINNED[name])
