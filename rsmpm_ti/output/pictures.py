@@ -9,6 +9,7 @@ import numpy as np
 from rsmpm_ti.analysis.fracture import spacing_of
 from rsmpm_ti.analysis.neighbours import pairs_within
 from rsmpm_ti.fields.side_motion import held_sides
+from rsmpm_ti.rock.criteria import Unbreakable
 from rsmpm_ti.spec.bodies.rocks import rock_indices
 from rsmpm_ti.spec.scene import Scene
 from rsmpm_ti.spec.seeding import Seeds
@@ -85,7 +86,7 @@ def stress_limit(scene: Scene, load: float | None) -> float:
     load expected."""
     if scene.output.stress_limit is not None:
         return scene.output.stress_limit
-    criteria = [rock.criterion for rock in scene.rocks if rock.criterion.breaks]
+    criteria = [rock.criterion for rock in scene.rocks if not isinstance(rock.criterion, Unbreakable)]
     if criteria:
         return 1.5 * max(criterion.tensile_strength for criterion in criteria)
     return 0.1 * load if load else 1e6
@@ -119,7 +120,7 @@ def load_limits(scene: Scene, volume: float) -> tuple[float | None, float | None
     if strain == 0.0:  # ends that stand still
         return None, None
     load = stiffness * strain + scene.loading.confinement
-    criteria = [rock.criterion for rock in scene.rocks if rock.criterion.breaks]
+    criteria = [rock.criterion for rock in scene.rocks if not isinstance(rock.criterion, Unbreakable)]
     if len(criteria) == len(scene.rocks):
         load = min(load, 1.05 * max(criterion.strength(scene.loading.confinement) for criterion in criteria))
     return strain, load
