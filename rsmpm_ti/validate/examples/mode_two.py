@@ -46,8 +46,20 @@ TESTS = {
     "flawed, confined": lambda energy: _flawed("confined", energy),
     "intact at 5 MPa": _jacketed,
 }
-READ = {"onset": "first crack", "peak": "peak", "residual": "stress at the end"}
+READ = {"onset": "first failure", "peak": "peak", "residual": "stress at the end"}
 WHY = "what depends on an energy that nobody measured for this rock; nothing judges it"
+
+
+def _draw(figure, found: dict[str, list[Told]]) -> None:
+    panels = figure.subplots(1, len(TESTS))
+    for axes, (name, series) in zip(panels, found.items(), strict=True):
+        for key, word in READ.items():
+            axes.semilogx([OWN * k for k in FACTORS], [getattr(t, key) / MPa for t in series], "o-", label=word)
+        axes.set(xlabel="G_f_II [J/m^2]", title=name, ylim=(0, None))
+        axes.axvspan(1e3, 1e4, color="0.9", zorder=0)
+    panels[0].set_ylabel("nominal stress [MPa]")
+    panels[0].legend(fontsize="small")
+    figure.suptitle("What depends on the energy of a crack in shear; grey: intact granite")
 
 
 def sweep(full: bool) -> Outcome:
@@ -59,18 +71,7 @@ def sweep(full: bool) -> Outcome:
         for k, told in zip(FACTORS, series, strict=True)
     ]
 
-    def draw(figure):
-        panels = figure.subplots(1, len(TESTS))
-        for axes, (name, series) in zip(panels, found.items(), strict=True):
-            for key, word in READ.items():
-                axes.semilogx([OWN * k for k in FACTORS], [getattr(t, key) / MPa for t in series], "o-", label=word)
-            axes.set(xlabel="G_f_II [J/m^2]", title=name, ylim=(0, None))
-            axes.axvspan(1e3, 1e4, color="0.9", zorder=0)
-        panels[0].set_ylabel("nominal stress [MPa]")
-        panels[0].legend(fontsize="small")
-        figure.suptitle("What depends on the energy of a crack in shear; grey: intact granite")
-
-    return Outcome(tuple(rows), draw)
+    return Outcome(tuple(rows), lambda figure: _draw(figure, found))
 
 
 CASES = (

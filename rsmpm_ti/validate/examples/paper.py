@@ -15,12 +15,11 @@ from rsmpm_ti.records.snapshot import TENSION
 from rsmpm_ti.results.result import Result
 from rsmpm_ti.spec.regions import Slit, slits_of
 from rsmpm_ti.spec.scene import Scene
-from rsmpm_ti.spec.seeding import Lattice
 from rsmpm_ti.units import MPa, mm
 from rsmpm_ti.validate.comparison import Comparison, compare, predict
 from rsmpm_ti.validate.examples.page import draw_field, draw_growth
 from rsmpm_ti.validate.experiment import Experiment, Input
-from rsmpm_ti.verify.elastic.slit_field import INNER, slit_specimen
+from rsmpm_ti.verify.elastic.slit_field import INNER, slit_disc, slit_specimen
 from rsmpm_ti.verify.elastic.slit_field import compare as field_of
 from rsmpm_ti.verify.reference.fe_field import load_field
 
@@ -82,12 +81,9 @@ def _stated(grown: Grown, particles: int) -> list[Comparison]:
 
 
 def page(full: bool) -> Outcome:
-    cube_scene = slit_specimen(0.5e-3, 2e-3)
-    disc_scene = load_scene("disc", arc=5.0)
-    disc_scene = _on_a_lattice(disc_scene)
     fields = {
-        "cube": field_of(cube_scene, load_field("slit_specimen_2mm"))[0],
-        "disc": field_of(disc_scene, load_field("slit_disc_1mm"), INNER)[0],
+        "cube": field_of(slit_specimen(0.5e-3, 2e-3), load_field("slit_specimen_2mm"))[0],
+        "disc": field_of(slit_disc(), load_field("slit_disc_1mm"), INNER)[0],
     }
     rows = [
         compare(f"{name}: rms difference of sigma_1 from finite elements, of the nominal stress", "1", 0.0, error.rms,
@@ -117,15 +113,6 @@ def page(full: bool) -> Outcome:
         middle.suptitle("Figure 2: crack growth, scenes `cube` and `disc` as they ship; red: tension, blue: shear")
 
     return Outcome(tuple(rows), draw)
-
-
-def _on_a_lattice(scene: Scene) -> Scene:
-    """As the case `disc_field` of the verification has it: fitted edges, plain FLIP."""
-    from dataclasses import replace
-
-    from rsmpm_ti.method.transfer import PicFlip
-
-    return replace(scene, transfer=PicFlip(), bodies=(replace(scene.bodies[0], seeding=Lattice(fitted=True)),))
 
 
 CASES = (

@@ -23,8 +23,8 @@ END = 2.0e-3
 class Told:
     """onset, peak: nominal stress at the first failure, and the largest of the filtered load [Pa], NaN for none.
 
-    shear_onset: at the first failure in shear [Pa]; tensile: whether the first crack is; along: distance of the first
-    crack from its flaw's middle, along the flaw, over half its length; residual: mean stress of the last tenth of the
+    shear_onset: at the first failure in shear [Pa]; tensile: whether the first failure is; along: distance of the first
+    failure from its flaw's middle, along the flaw, over half its length; residual: mean stress of the last tenth of the
     rows [Pa].
     """
 
@@ -49,16 +49,17 @@ def tell(scene: Scene) -> Told:
     time, stress = result.history["time_s"], nominal_stress(result.history)
     onset, peak = (summary.get(key) for key in ("first_failure_stress_Pa", "peak_filtered_Pa"))
     sheared = events.time[events.mode == SHEAR]
+    first = int(np.argmin(events.time)) if len(events) else 0
     slits, along = slits_of(scene.bodies[0].region), math.nan
     if slits and len(events):
-        frames = [slit.frame(events.x[:1])[0] for slit in slits]
+        frames = [slit.frame(events.x[[first]])[0] for slit in slits]
         nearest = min(zip(frames, slits, strict=True), key=lambda pair: float(np.hypot(*pair[0])))
         along = abs(float(nearest[0][0])) / (0.5 * nearest[1].length)
     return Told(
         onset=math.nan if onset is None else float(onset),
         peak=math.nan if peak is None else float(peak),
         shear_onset=float(np.interp(sheared.min(), time, stress)) if len(sheared) else math.nan,
-        tensile=len(events) > 0 and int(events.mode[np.argmin(events.time)]) == TENSION,
+        tensile=len(events) > 0 and int(events.mode[first]) == TENSION,
         along=along,
         residual=float(stress[-max(1, len(stress) // 10) :].mean()),
     )

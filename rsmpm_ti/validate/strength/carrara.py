@@ -24,7 +24,8 @@ from rsmpm_ti.validate.strength.specimens import axial_strength, rock_like
 
 POINTS = strengths("Carrara marble", "extension")
 TENSION_UP_TO, SHEAR_FROM = 60.0 * MPa, 110.0 * MPa
-"""Radial pressures up to which cracks open, and from which they shear, as told by the paper's fracture angles."""
+"""Radial pressures up to which cracks open, and from which they shear, set before any run: up to
+the one the axial stress at failure does not change with the radial one, from the other it does throughout."""
 
 TENSION = tuple(p for p in POINTS if p.sigma_1 <= TENSION_UP_TO)
 SHEAR = tuple(p for p in POINTS if p.sigma_1 >= SHEAR_FROM)

@@ -18,17 +18,11 @@ def ends_and_middle(points: tuple[Strength, ...]) -> tuple[Strength, ...]:
     return tuple(p for p in points if p.sigma_3 in (pressures[0], middle, pressures[-1]))
 
 
-def _line(points: tuple[Strength, ...]) -> tuple[float, float]:
-    """Slope N and intercept UCS [Pa] of sigma_1 = UCS + N sigma_3, by least squares."""
-    slope, intercept = np.polyfit([p.sigma_3 for p in points], [p.sigma_1 for p in points], 1)
-    return float(slope), float(intercept)
-
-
 def mohr_coulomb(points: tuple[Strength, ...]) -> tuple[float, float]:
-    """Cohesion [Pa] and friction angle [degrees] of the line through some strengths: N = tan^2(45 + phi/2), UCS =
-    2 c sqrt(N) (Jaeger, Cook & Zimmerman 2007, sec. 4.5)."""
-    slope, ucs = _line(points)
-    return ucs / (2.0 * np.sqrt(slope)), float(np.degrees(2.0 * np.arctan(np.sqrt(slope))) - 90.0)
+    """Cohesion [Pa] and friction angle [degrees] of the line through some strengths, by least squares: sigma_1 = UCS +
+    N sigma_3, N = tan^2(45 + phi/2), UCS = 2 c sqrt(N) (Jaeger, Cook & Zimmerman 2007, sec. 4.5)."""
+    slope, ucs = np.polyfit([p.sigma_3 for p in points], [p.sigma_1 for p in points], 1)
+    return float(ucs / (2.0 * np.sqrt(slope))), float(np.degrees(2.0 * np.arctan(np.sqrt(slope))) - 90.0)
 
 
 def hoek_brown(points: tuple[Strength, ...]) -> tuple[float, float]:

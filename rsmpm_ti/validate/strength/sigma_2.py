@@ -29,7 +29,8 @@ BLIND = "Mohr-Coulomb does not see sigma_2: this is what plane strain answers ar
 
 
 def in_plane_strain(points: tuple[Strength, ...], nu: float) -> float:
-    """Measured sigma_1 [Pa] where sigma_2 = p + nu (sigma_1 - p), between the measured sigma_2."""
+    """Measured sigma_1 [Pa] where sigma_2 = p + nu (sigma_1 - p), between the measured sigma_2; that of the
+    largest beyond it, as at 38 MPa, by 24 MPa."""
     pressure = points[0].sigma_3
     sigma_2, sigma_1 = np.array([p.sigma_2 for p in points]), np.array([p.sigma_1 for p in points])
 
