@@ -1,4 +1,4 @@
-"""Cracks that grow where the mean stress is highest: the most overloaded fail, and exclude what lies beside them."""
+"""Cracks that grow where the mean stress is highest: the most overloaded fail, and those around learn where."""
 
 import taichi as ti
 
@@ -15,21 +15,34 @@ from rsmpm_ti.failure.stress_update import start_failure
 from rsmpm_ti.fields.nonlocal_sums import MAX_NEW_CRACKS
 from rsmpm_ti.fields.stencil import coordinates
 from rsmpm_ti.rock.criteria import tensile_strength
-from rsmpm_ti.rock.tensors import extreme_principals, principal_normal
+from rsmpm_ti.rock.tensors import principal_normal
+
+LEAST_OVERLOAD = 1e-3
+"""Of a particle at a tip whose own tension has reached its strength, whatever the mean is."""
+
+
+@ti.func
+def is_overloaded(sim: ti.template(), p):
+    """Whether an intact particle may crack at this look: at a tip by its own stress, else by the mean stress."""
+    rule, found = sim.rock.nonlocal_mean, False
+    if rule.at_tip(sim, p):
+        found = rule.tension_across(sim, p, sim.particles.sigma[p]) >= tensile_strength(sim, p)
+    elif near_overloaded(sim, p):
+        found = rule.tension_across(sim, p, mean_stress(sim, p)) >= tensile_strength(sim, p)
+    return found
 
 
 @ti.kernel
 def evaluate_overload(sim: ti.template()):
-    """Overload of each intact particle by the mean stress, where it exceeds its strength; its nodes learn the most."""
-    particles = sim.particles
+    """Overload by the mean stress of each intact particle that may crack; its nodes learn the most."""
+    particles, rule = sim.particles, sim.rock.nonlocal_mean
     for p in particles.mode:
         particles.overload[p] = 0.0
-        asked = belongs(sim, p) and sim.nonlocal_sums.any_overloaded[None] == 1 and particles.mode[p] == 0
-        if asked and near_overloaded(sim, p):
+        if belongs(sim, p) and particles.mode[p] == 0 and is_overloaded(sim, p):
             mean = mean_stress(sim, p)
-            load = extreme_principals(mean)[0] / tensile_strength(sim, p)
             normal = principal_normal(mean)
-            if load >= 1.0 and sim.rock.nonlocal_mean.own_decides(sim, p, normal) == 0:
+            if rule.own_decides(sim, p, normal) == 0:
+                load = ti.max(rule.tension_across(sim, p, mean) / tensile_strength(sim, p), LEAST_OVERLOAD)
                 particles.overload[p] = load
                 particles.history.crack_normal[p] = normal
                 base = sim.grid.base(coordinates(sim, p, sim.grid.frame()), sim.shape)
@@ -41,7 +54,7 @@ def evaluate_overload(sim: ti.template()):
 def crack_most_overloaded(sim: ti.template(), time: ti.f64):
     """Start a crack in every particle that none of its neighbours exceeds."""
     particles = sim.particles
-    ti.loop_config(serialize=sim.traversal.ordered)  # the last of several new cracks beside a particle excludes it
+    ti.loop_config(serialize=sim.traversal.ordered)  # of several new cracks as near to a particle the first counts
     for p in range(particles.count):
         load = particles.overload[p]
         if load > 0.0:
@@ -59,26 +72,25 @@ def crack_most_overloaded(sim: ti.template(), time: ti.f64):
 
 
 @ti.kernel
-def exclude(sim: ti.template()):
-    """Mark what lies beside the cracks that have just begun."""
+def show_cracks(sim: ti.template()):
+    """What lies near the cracks that have just begun learns where the nearest is."""
     particles, new_cracks = sim.particles, sim.nonlocal_sums
-    radius, slope = ti.static(sim.rock.nonlocal_mean.radius, sim.rock.nonlocal_mean.slope)
+    radius = ti.static(sim.rock.nonlocal_mean.radius)
     count = ti.min(new_cracks.count[None], MAX_NEW_CRACKS)
     for p in particles.mode:
         if particles.mode[p] == 0 and belongs(sim, p):
             x = particles.reference[p] + particles.u[p]
             for k in range(count):
-                d = x - new_cracks.x[k]
-                if d.norm() < radius:
-                    n = new_cracks.normal[k]
-                    if ti.abs(d.dot(n)) > slope * ti.abs(d[0] * n[1] - d[1] * n[0]):
-                        particles.excluding_normal[p] = n
+                d, known = new_cracks.x[k] - x, particles.to_crack[p].norm()
+                if d.norm() < radius and (known == 0.0 or d.norm() < known):
+                    particles.to_crack[p] = d
+                    particles.nearest_normal[p] = new_cracks.normal[k]
 
 
 def track_cracks(sim, time: float) -> None:
     """The tensile check by the mean stress, after a step, and the openings by which cracks lose strength.
 
-    Of each rock for itself: means are over its own particles, and a crack excludes no other rock beside it.
+    Of each rock for itself: means are over its own particles, and a crack is none of another rock's.
     """
     for view in sim.nonlocal_views:
         _track_cracks(view, time)
@@ -92,4 +104,4 @@ def _track_cracks(sim, time: float) -> None:
     mark_overloaded(sim, sim.nonlocal_sums.weakest)
     evaluate_overload(sim)
     crack_most_overloaded(sim, time)
-    exclude(sim)
+    show_cracks(sim)

@@ -22,7 +22,7 @@ from rsmpm_ti.rock.tensors import extreme_principals, principal_normal
 def tensile_load(sim: ti.template(), p, own):
     """Load factor in tension: `own`, by the particle's own stress, or by what decides instead with a nonlocal mean.
 
-    That is the mean stress, and own stress where the particle is excluded from tension in its direction.
+    That is the mean stress, and own stress at a crack's tip and in its band.
     """
     load = own
     if ti.static(sim.is_nonlocal):
@@ -30,7 +30,10 @@ def tensile_load(sim: ti.template(), p, own):
         load = ti.select(rule.own_decides(sim, p, principal_normal(sim.particles.sigma[p])) == 1, own, 0.0)
         mean = mean_stress(sim, p)
         if rule.own_decides(sim, p, principal_normal(mean)) == 0:
-            load = ti.max(load, extreme_principals(mean)[0] / tensile_strength(sim, p))
+            deciding = mean
+            if rule.at_tip(sim, p):
+                deciding = sim.particles.sigma[p]
+            load = ti.max(load, rule.tension_across(sim, p, deciding) / tensile_strength(sim, p))
     return load
 
 

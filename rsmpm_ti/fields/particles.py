@@ -55,7 +55,7 @@ def stored(scene: Scene) -> tuple[Stored, ...]:
     found += [Stored("strength", 1)] * any(rock.heterogeneity.varies for rock in rocks)
     found += [entry for entry in of_law if not entry.whole]
     if any(averaging(scene)):
-        found += [Stored("excluding_normal", dim)]
+        found += [Stored("to_crack", dim), Stored("nearest_normal", dim)]
         found += [Stored("crack_strain_nonlocal", 1), Stored("crack_strain_max_nonlocal", 1)]
         found += [Stored("slip_nonlocal", 1), Stored("slip_max_nonlocal", 1)]
     found += [Stored("id", 1, True), *[Stored("rock", 1, True)] * (len(rocks) > 1)]
@@ -108,13 +108,14 @@ class Particles:
         real_fields += self.history.real_fields
         whole_fields += self.history.whole_fields
         if any(averaging(scene)):
-            # overload is of one step only; excluding_normal: of the crack beside which this particle lies, or 0
-            self.overload, self.excluding_normal = ti.field(real, count), vector(dim)
+            # overload is of one step only; from here to the nearest crack, and its normal, or 0 where none is near
+            self.overload, self.to_crack, self.nearest_normal = ti.field(real, count), vector(dim), vector(dim)
             # crack strain of the rock around, by which tensile strength is lost: as last averaged, and the largest
             self.crack_strain_nonlocal, self.crack_strain_max_nonlocal = ti.field(real, count), ti.field(real, count)
             # the same of slip, by which cohesion is lost
             self.slip_nonlocal, self.slip_max_nonlocal = ti.field(real, count), ti.field(real, count)
-            real_fields += [self.excluding_normal, self.crack_strain_nonlocal, self.crack_strain_max_nonlocal]
+            real_fields += [self.to_crack, self.nearest_normal]
+            real_fields += [self.crack_strain_nonlocal, self.crack_strain_max_nonlocal]
             real_fields += [self.slip_nonlocal, self.slip_max_nonlocal]
         # what is 0 in a particle at rest without stress, and what a particle that can break has besides
         resting = [self.v, self.sigma, *([self.C] if self.affine else []), *([self.q] if self.viscous else [])]

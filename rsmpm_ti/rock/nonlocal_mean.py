@@ -10,13 +10,18 @@ from annotated_types import Interval
 
 from rsmpm_ti.checks import Positive, checked
 from rsmpm_ti.errors import refuse
-from rsmpm_ti.units import Angle, Length
+from rsmpm_ti.rock.tensors import extreme_principals, in_frame
+from rsmpm_ti.units import Length
 
 MIN_CELLS = 2.0
 """Shortest length of the mean [cells]: over one it is hardly a mean, and paths scatter by eight (docs/studies.md)."""
 
 MAX_CELLS = 64
 """Longest length of the mean [cells]; every node then sums 450 others along each axis."""
+
+AHEAD = math.tan(math.radians(15.0))
+"""Distance along a crack over that across it from which on rock is ahead of it and not beside: cracks turn by 70.5
+degrees at most (Erdogan & Sih 1963), and what pulls along the faces of a sheared one is not what makes it longer."""
 
 
 @ti.data_oriented
@@ -69,10 +74,13 @@ class Nonlocal:
     The mean is weighted by a Gaussian of standard deviation `length` [m], a property of the rock like its grain, over
     the rock that is there: free faces and flaws weigh nothing. Bazant & Jirasek (2002), J. Eng. Mech. 128:1119, eq. 1.
 
-    A crack grows as a line, not as the blob in which the smooth stress is high: what lies beside a crack, outside a
-    wedge of `wedge` degrees about its line and nearer than `exclusion` lengths, is judged by its own stress, which the
-    crack relieves. Local tracking with an exclusion radius, Cervera & Chiumenti (2006), Comput. Methods Appl. Mech.
-    Eng. 196:304, sec. 4.
+    A crack grows as a line, not as the blob in which the smooth stress is high. Nearer to one than `exclusion` lengths
+    the tension across the line to it decides, not sigma_1, which about a tip is largest 60 degrees off its line: the
+    hoop stress of Erdogan & Sih (1963), J. Basic Eng. 85:519. What lies beside a crack is relieved of it: an exclusion
+    radius, as of Cervera & Chiumenti (2006), Comput. Methods Appl. Mech. Eng. 196:304, sec. 4. At a tip, no farther
+    than a crack band is wide, a particle's own tension across that line says when, since the mean, part of it over
+    what the crack has relieved, is late; the mean says which. What lies in the band of a crack cracks by its own
+    stress, since a band opens as a whole.
 
     A cracked particle loses tensile strength by the opening of the crack that it is part of, and cohesion by the slip
     of the band that it is part of, read from the mean crack strain and the mean slip over the same length, not by its
@@ -84,15 +92,32 @@ class Nonlocal:
 
     length: Annotated[Length, Positive]
     exclusion: Annotated[float, Interval(ge=0.0, le=100.0)] = 4.0
-    wedge: Annotated[Angle, Interval(ge=0.1, le=89.9)] = 25.0
 
     acts = True
 
     @ti.func
     def own_decides(self, sim: ti.template(), p, normal):
-        """Only beside a crack whose normal is within 45 degrees: there the mean stress is that of the crack's tip."""
-        along = normal.dot(sim.particles.excluding_normal[p])
-        return ti.select(2.0 * along * along > 1.0, 1, 0)
+        """Only in the band of a crack whose normal is within 45 degrees: half a cell along it, its width across."""
+        n, d = sim.particles.nearest_normal[p], sim.particles.to_crack[p]
+        along = normal.dot(n)
+        within = ti.abs(d[0] * n[1] - d[1] * n[0]) <= ti.static(0.5 * sim.grid.dx) and ti.abs(d.dot(n)) <= sim.band
+        return ti.select(within and 2.0 * along * along > 1.0, 1, 0)
+
+    @ti.func
+    def at_tip(self, sim: ti.template(), p):
+        """Whether it is so near to a crack, and ahead of it, that its own tension says when it becomes part of it."""
+        n, d = sim.particles.nearest_normal[p], sim.particles.to_crack[p]
+        ahead = ti.abs(d[0] * n[1] - d[1] * n[0]) > AHEAD * ti.abs(d.dot(n))
+        return ahead and d.norm() <= sim.band
+
+    @ti.func
+    def tension_across(self, sim: ti.template(), p, sigma):
+        """Of a stress at a particle: sigma_1 or, near a crack, the tension across the line to it."""
+        tension, d = extreme_principals(sigma)[0], sim.particles.to_crack[p]
+        away = d.norm()
+        if away > 0.0:
+            tension = in_frame(sigma, ti.Vector([-d[1], d[0]]) / away)[0]
+        return tension
 
     @ti.func
     def own_tension(self, sim: ti.template(), sigma_1):
@@ -129,13 +154,8 @@ class Nonlocal:
 
     @property
     def radius(self) -> float:
-        """Distance up to which a crack excludes what lies beside it [m]."""
+        """Distance from a crack up to which the tension across the line to it counts [m]."""
         return self.exclusion * self.length
-
-    @property
-    def slope(self) -> float:
-        """Distance across over distance along of the edge of the wedge that a crack does not exclude."""
-        return math.tan(math.radians(self.wedge))
 
     def filter_weights(self, dx: float, variance: float) -> tuple[float, ...]:
         """Weights of a row of nodes, symmetric about the middle one, whose variance with that of spreading to nodes

@@ -249,7 +249,6 @@ def test_mean_over_less_than_two_cells_is_refused_with_a_dx_and_a_length_that_wo
         ],
         *[("nonlocal_mean.length", lambda v=v: Nonlocal(length=v)) for v in (0.0, -1e-3, NAN, INF)],
         *[("nonlocal_mean.exclusion", lambda v=v: Nonlocal(length=1e-3, exclusion=v)) for v in (-0.1, 101.0, NAN)],
-        *[("nonlocal_mean.wedge", lambda v=v: Nonlocal(length=1e-3, wedge=v)) for v in (0.0, 90.0, -5.0, NAN)],
     ],
 )
 def test_impossible_crack_is_refused_by_field(field, build):
@@ -296,5 +295,5 @@ def test_taps_have_the_variance_that_is_left_to_them(shape, cells):
 )
 def test_rock_with_directional_cracks_and_mean_stress_survives_json(soft):
     law = Directional(residual_friction_angle=25.0, rotating=True, softening=soft)
-    one = scene(after_failure=law, nonlocal_mean=Nonlocal(length=2.5e-3, exclusion=3.0, wedge=20.0))
+    one = scene(after_failure=law, nonlocal_mean=Nonlocal(length=2.5e-3, exclusion=3.0))
     assert from_plain(json.loads(json.dumps(to_plain(one), allow_nan=False))) == one

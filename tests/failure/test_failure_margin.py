@@ -72,7 +72,8 @@ def stressed(stress, **changes) -> Simulation:
     if sim.particles.breaks:
         sim.particles.mode.fill(0)
     if sim.is_nonlocal:
-        sim.particles.excluding_normal.fill(0.0)
+        sim.particles.to_crack.fill(0.0)
+        sim.particles.nearest_normal.fill(0.0)
     return sim
 
 
@@ -133,18 +134,35 @@ def test_mean_stress_decides_on_tension_where_it_is_asked_to():
     assert (state.governs[inside] == TENSION).all()
 
 
-def test_own_stress_decides_beside_a_crack():
+def near_crack(sim, to_crack, normal) -> np.ndarray:
+    """Margins where each particle has a crack at `to_crack` [mm] from it, with a normal."""
+    sim.particles.to_crack.fill(MM * ti.Vector(to_crack))
+    sim.particles.nearest_normal.fill(ti.Vector(normal))
+    return look(sim).margin
+
+
+def test_own_stress_decides_in_the_band_of_a_crack():
     sim = averaged()
-    excluding = sim.particles.excluding_normal
-    excluding.fill(ti.Vector([1.0, 0.0]))  # a crack with its normal along x, as sigma_1 is
+    right = look(sim).x[:, 0] > 12.0 * MM
+    margin = near_crack(sim, [1.0, 0.0], [1.0, 0.0])  # a crack beside, across sigma_1
+    np.testing.assert_allclose(margin[right], 0.25, atol=1e-12)
+    np.testing.assert_allclose(margin[~right], 1.0, atol=1e-12)
+
+
+def test_tension_across_the_line_to_a_crack_decides_near_it():
+    """By a particle's own stress at a tip, 1 mm away, and by the mean stress 5 mm away, in any direction."""
+    sim = averaged()
     state = look(sim)
-    right = state.x[:, 0] > 12.0 * MM
-    np.testing.assert_allclose(state.margin[right], 0.25, atol=1e-12)
-    np.testing.assert_allclose(state.margin[~right], 1.0, atol=1e-12)
-    excluding.fill(ti.Vector([0.0, 1.0]))  # one that runs along x excludes nothing here
-    across = look(sim).margin
-    excluding.fill(0.0)
-    np.testing.assert_array_equal(across, look(sim).margin)
+    inside = (np.abs(state.x - 12.0 * MM) < 3.0 * MM).all(axis=1)
+    mean = 0.75 * np.array([0.5 * math.erfc(-(x - 12.0 * MM) / (LENGTH * math.sqrt(2.0))) for x in state.x[inside, 0]])
+    right = state.x[inside, 0] > 12.0 * MM
+    shear = np.where(right, 1.5 * N_PHI / UCS, 0.0)
+    for degrees in (90.0, 60.0, 0.0):
+        c, s = math.cos(math.radians(degrees)), math.sin(math.radians(degrees))
+        own = near_crack(sim, [c, s], [-s, c])[inside]
+        np.testing.assert_allclose(own, 1.0 - np.maximum(np.where(right, 0.75 * s * s, 0.0), shear), atol=1e-12)
+        far = near_crack(sim, [5.0 * c, 5.0 * s], [-s, c])[inside]
+        np.testing.assert_allclose(far, 1.0 - np.maximum(mean * s * s, shear), atol=0.004)
 
 
 def test_own_tension_beyond_the_cut_off_is_no_shear_with_averaging():

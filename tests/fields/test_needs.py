@@ -53,8 +53,8 @@ ADDED = {
     ),
     "mean stress": (
         rock(criterion=STRENGTH, after_failure=SOFT, nonlocal_mean=Nonlocal(length=3e-3)),
-        {"mode", *HISTORY, "overload", "excluding_normal", "crack_strain_nonlocal", "crack_strain_max_nonlocal",
-         "slip_nonlocal", "slip_max_nonlocal"},
+        {"mode", *HISTORY, "overload", "to_crack", "nearest_normal", "crack_strain_nonlocal",
+         "crack_strain_max_nonlocal", "slip_nonlocal", "slip_max_nonlocal"},
     ),
 }  # fmt: skip
 

@@ -108,7 +108,7 @@ def memory_of_particles(scene, count: float) -> float:
     whole = 4 + (len(rocks) > 1)  # id, key, base, order; rock
     event = 0
     if scene.breaks:
-        laws, nonlocal_fields = [rock.after_failure for rock in rocks if rock.criterion.breaks], 5 + dim
+        laws, nonlocal_fields = [rock.after_failure for rock in rocks if rock.criterion.breaks], 5 + 2 * dim
         history = variables_of(scene)
         whole += 1 + sum(v.whole for v in history)
         reals += sum(dim if v.per_axis else 1 for v in history if not v.whole)

@@ -11,7 +11,7 @@ does not yield. The strength is what the cells carry (tough_plate.py).
 """
 
 import math
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -51,10 +51,6 @@ WINDOW = 6e-6
 """Over which the speed of the front is taken [s]: 10 mm."""
 
 ANGLE, BAND = 70.0, (65.0, 75.0)
-NARROW = 10.0
-"""Of the wedge that a crack does not exclude [degrees]: a look at what its 25 degrees do, which nothing judges."""
-
-WANDERS = "cracks may leave their own planes by 25 degrees (wedge, rock/nonlocal_mean.py): kept to 10 it is 75, coarse"
 BRANCHES = "no energy is asked for, so that the crack branches, and its branches lean"
 PLANES = "across the tension that broke them; a crack that follows them goes their way"
 TOLD = "Kalthoff & Winkler 1988: 'approximately 70 degrees' (Batra & Ravisankar 2000, IJF 105:161)"
@@ -139,24 +135,16 @@ def _rows(struck: Struck, law: str, beyond: str) -> list[Comparison]:
     return rows
 
 
-def _narrow() -> float:
-    """Angle [degrees] on the cells of the quick tier where cracks are kept to a narrower wedge than rock's is."""
-    rock = tough(density=DENSITY, elasticity=STEEL, energy=ENERGY, strength=STRENGTH, dx=QUICK_DX)
-    kept = replace(rock, nonlocal_mean=replace(rock.nonlocal_mean, wedge=NARROW))
-    return Struck(run_of(struck_plate(kept, QUICK_DX))).angle
-
-
 def kalthoff(full: bool) -> Outcome:
     dx = DX if full else QUICK_DX
     rock = tough(density=DENSITY, elasticity=STEEL, energy=ENERGY, strength=STRENGTH, dx=dx)
     energy = Struck(run_of(struck_plate(rock, dx)))
-    runs, rows = {"with fracture energy": energy}, _rows(energy, "with fracture energy", WANDERS)
+    runs, rows = {"with fracture energy": energy}, _rows(energy, "with fracture energy", "")
     if full:
         weak = brittle(density=DENSITY, elasticity=STEEL, strength=rock.criterion.tensile_strength)
         paper = Struck(run_of(struck_plate(weak, dx)))
         runs["law of the paper"] = paper
         rows += _rows(paper, "law of the paper", BRANCHES)
-        rows.append(predict(f"wedge of {NARROW:g} degrees, coarse: angle, tip to end", "degrees", _narrow(), WANDERS))
     carried = carried_strength(STEEL, ENERGY, STRENGTH, dx)
     rows.append(predict("strength that the cells carry, over the steel's", "1", carried / STRENGTH, "tough_plate.py"))
 
