@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from rsmpm_ti.cases.case import Row
-from rsmpm_ti.cases.report import VERDICTS, Layout, print_head, print_rows, write_table
+from rsmpm_ti.cases.report import VERDICTS, Layout, kept_table, print_head, print_rows, write_table
 from rsmpm_ti.cases.running import cases_of, run_cases
 from rsmpm_ti.process import command, tell
 
@@ -16,8 +16,9 @@ from rsmpm_ti.process import command, tell
 class Suite:
     """`python -m rsmpm_ti.NAME`: the module that holds its CASES, and the file that its table goes to.
 
-    layout: of the table; write: more files made of all (case, row), given their folder; misses_fail: whether a row that
-    does not pass makes the command fail, as a case that breaks does.
+    layout: of the table; write: more files, given their folder, the new (case, row) and whether they are of the long
+    tier, and the lines of the table; misses_fail: whether a row that does not pass makes the command fail, as a case
+    that breaks does.
     """
 
     name: str
@@ -26,7 +27,7 @@ class Suite:
     table: str
     threads: int | None = None  # of each case; by default the processors are shared out
     layout: Layout = VERDICTS
-    write: Callable[[Path, list[tuple[str, Row]]], None] | None = None
+    write: Callable[[Path, list[tuple[str, Row]], bool, list[list[str]]], None] | None = None
     misses_fail: bool = True
 
 
@@ -61,7 +62,9 @@ def run_suite(suite: Suite, arguments: list[str] | None = None) -> int:
         tell(f"{suite.name}: {out} cannot be written: {error.strerror}; give another with --out")
         return 2
     jobs = min(options.jobs, len(names))
-    rows, broken = [], 0
+    rows: list[tuple[str, Row]] = []
+    broken, order = 0, list(cases)
+    table = kept_table(out / suite.table, suite.layout, set(cases) - set(names))
     print_head(suite.layout)
     threads = suite.threads or max(1, (os.cpu_count() or 1) // jobs)
     for done in run_cases(suite.catalogue, names, options.full, out, jobs, threads):
@@ -69,11 +72,14 @@ def run_suite(suite: Suite, arguments: list[str] | None = None) -> int:
         if done.problem:
             print(f"{done.name:<18} broke: {done.problem}", flush=True)
             broken += 1
-        rows += [(done.name, row) for row in done.rows]
-    rows.sort(key=lambda entry: names.index(entry[0]))
-    write_table(out / suite.table, rows, suite.layout)
-    if suite.write is not None:
-        suite.write(out, rows)
+        new = [(done.name, row) for row in done.rows]
+        rows += new
+        table = sorted(table + [suite.layout.cells(*entry) for entry in new], key=lambda line: order.index(line[0]))
+        write_table(out / suite.table, table, suite.layout)  # at once: what has been found is not lost with the rest
+        if suite.write is not None:
+            suite.write(out, new, options.full, table)
     misses = sum(not row.passed for _, row in rows) + broken
-    print(f"{len(rows)} numbers, {misses} misses; table and pictures in {out}")
+    others = len({line[0] for line in table} - set(names))
+    stays = f", beside {others} cases of earlier runs" if others else ""
+    print(f"{len(rows)} numbers, {misses} misses; table and pictures in {out}{stays}")
     return 1 if broken or (misses and suite.misses_fail) else 0

@@ -1,5 +1,6 @@
 """The table of cases: on the terminal, as CSV, and one picture per case."""
 
+import csv
 import math
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -42,9 +43,20 @@ VERDICTS = Layout(
 """Of rows that pass or miss."""
 
 
-def write_table(path: Path, rows: list[tuple[str, Row]], layout: Layout = VERDICTS) -> None:
+def kept_table(path: Path, layout: Layout, others: set[str]) -> list[list[str]]:
+    """Lines of an earlier table about other cases, which stay; none where the table is no such one."""
+    try:
+        with open(path, newline="", encoding="utf-8") as file:
+            head, *lines = csv.reader(file)
+    except (OSError, ValueError, csv.Error):
+        return []
+    width = len(layout.columns)
+    return [line for line in lines if len(line) == width and line[0] in others] if tuple(head) == layout.columns else []
+
+
+def write_table(path: Path, table: list[list[str]], layout: Layout = VERDICTS) -> None:
     """One line per compared number."""
-    write_csv(path, layout.columns, (layout.cells(name, row) for name, row in rows))
+    write_csv(path, layout.columns, table)
 
 
 def print_rows(name: str, rows: tuple[Row, ...], seconds: float, layout: Layout = VERDICTS) -> None:

@@ -7,7 +7,7 @@ from rsmpm_ti import __version__
 from rsmpm_ti.cases.case import Row
 from rsmpm_ti.cases.running import cases_of
 from rsmpm_ti.records.files import complete, known
-from rsmpm_ti.validate.comparison import LAYOUT, Comparison, cells
+from rsmpm_ti.validate.comparison import LAYOUT, Comparison
 from rsmpm_ti.validate.experiment import Experiment
 
 PAGE = (1, 3, 2, 4, 5, 6, 7, 8)
@@ -33,27 +33,39 @@ def _row(row: Row) -> dict:
     }  # fmt: skip
 
 
-def _page(rows: list[tuple[str, Row]]) -> str:
+def _page(table: list[list[str]], quick: set[str]) -> str:
     """The table as Markdown, a heading for each case."""
     lines, before = [], ""
-    for name, row in rows:
-        if name != before:
+    for line in table:
+        if line[0] != before:
             heads = [LAYOUT.columns[k] for k in PAGE]
-            lines += ["", f"**`{name}`**", "", f"| {' | '.join(heads)} |", "|" + " --- |" * len(heads)]
-            before = name
-        of = cells(name, row)
-        lines.append(f"| {' | '.join(of[k] for k in PAGE)} |")
+            tier = ", quick form" if line[0] in quick else ""
+            lines += ["", f"**`{line[0]}`**{tier}", "", f"| {' | '.join(heads)} |", "|" + " --- |" * len(heads)]
+            before = line[0]
+        lines.append(f"| {' | '.join(line[k] for k in PAGE)} |")
     return "\n".join(lines[1:]) + "\n"
 
 
-def write_records(catalogue: str, out: Path, rows: list[tuple[str, Row]]) -> None:
-    """validation.json: version, and for each case its inputs and rows; validation.md."""
-    cases, found = cases_of(catalogue), {}
+def _earlier(path: Path) -> dict:
+    """Cases of an earlier validation.json; none where it is no such one."""
+    try:
+        return json.loads(path.read_text(encoding="utf-8"))["cases"]
+    except (OSError, ValueError, KeyError, TypeError):
+        return {}
+
+
+def write_records(catalogue: str, out: Path, rows: list[tuple[str, Row]], full: bool, table: list[list[str]]) -> None:
+    """validation.json: for each case of the table its inputs and rows, its version and tier; validation.md."""
+    cases, new = cases_of(catalogue), {}
     for name, row in rows:
         case = cases[name]
         assert isinstance(case, Experiment)
-        found.setdefault(name, {"about": case.about, "inputs": _inputs(case), "rows": []})["rows"].append(_row(row))
+        head = {"version": __version__, "full": full, "about": case.about, "inputs": _inputs(case), "rows": []}
+        new.setdefault(name, head)["rows"].append(_row(row))
+    known_cases = {**_earlier(out / "validation.json"), **new}
+    found = {name: known_cases[name] for name in dict.fromkeys(line[0] for line in table) if name in known_cases}
     with complete(out / "validation.json") as part:
-        part.write_text(json.dumps({"version": __version__, "cases": found}, indent=1, allow_nan=False) + "\n")
+        part.write_text(json.dumps({"cases": found}, indent=1, allow_nan=False) + "\n", encoding="utf-8")
+    quick = {name for name, case in found.items() if not case["full"]}
     with complete(out / "validation.md") as part:
-        part.write_text(_page(rows), encoding="utf-8")
+        part.write_text(_page(table, quick), encoding="utf-8")

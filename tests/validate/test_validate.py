@@ -9,9 +9,10 @@ import pytest
 from rsmpm_ti.cases.running import run_case
 from rsmpm_ti.validate.__main__ import CATALOGUE, main
 from rsmpm_ti.validate.catalogue import CASES, MODULES
-from rsmpm_ti.validate.comparison import Comparison, compare, predict
+from rsmpm_ti.validate.comparison import Comparison, cells, compare, predict
 from rsmpm_ti.validate.data.tables import FOLDER, gregoire, strengths
 from rsmpm_ti.validate.experiment import Experiment, Input
+from rsmpm_ti.validate.record import write_records
 from rsmpm_ti.validate.strength.fits import hoek_brown, mohr_coulomb
 
 PINNED = {
@@ -160,6 +161,21 @@ def test_command_writes_table_json_page_and_picture(tmp_path, capsys):
     assert record["rows"][0]["datum"] == row["datum"] and record["inputs"][0]["fitted_on"]
     assert "| strength under 17 MPa | 424 |" in (tmp_path / "validation.md").read_text(encoding="utf-8")
     assert (tmp_path / "westerly.png").is_file()
+
+
+def test_records_keep_what_is_known_of_other_cases(tmp_path):
+    """Each with its tier; a page says which cases were run in their quick form."""
+    rows = [("zigong", compare("a", "MPa", 10.0, 12.0, 0.05, "source"))]
+    write_records(CATALOGUE, tmp_path, rows, True, [cells(*entry) for entry in rows])
+    more = [("westerly", compare("b", "MPa", 10.0, 10.1, 0.05, "source"))]
+    write_records(CATALOGUE, tmp_path, more, False, [cells(*entry) for entry in (*more, *rows)])
+    found = json.loads((tmp_path / "validation.json").read_text(encoding="utf-8"))["cases"]
+    assert [(name, case["full"], case["rows"][0]["quantity"]) for name, case in found.items()] == [
+        ("westerly", False, "b"),
+        ("zigong", True, "a"),
+    ]
+    page = (tmp_path / "validation.md").read_text(encoding="utf-8")
+    assert "**`westerly`**, quick form" in page and "**`zigong`**\n" in page
 
 
 def test_unknown_case_is_refused(capsys):

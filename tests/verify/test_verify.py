@@ -101,3 +101,27 @@ def test_case_that_breaks_or_misses_gives_status_1_and_the_others_still_run(tmp_
     assert main(["wave", "hole", "--out", str(tmp_path)]) == 1
     printed = capsys.readouterr().out
     assert "MISS" in printed and "because" in printed and "broke: ValueError: x" in printed and "2 misses" in printed
+
+
+def test_a_run_of_some_cases_keeps_what_is_known_of_the_others(tmp_path, capsys, monkeypatch):
+    import rsmpm_ti.cases.command as command
+    from rsmpm_ti.cases.running import Finished
+
+    cases = {"hole": None, "wave": None}
+    monkeypatch.setattr(command, "cases_of", lambda _: cases)
+
+    def lines(name: str, value: float | None) -> list[tuple[str, str]]:
+        rows = () if value is None else (at_most("a", value, 0.1, "because"),)
+        finished = Finished(name, rows, 1.0, "" if rows else "ValueError: x")
+        monkeypatch.setattr(command, "run_cases", lambda *_: iter([finished]))
+        main([name, "--out", str(tmp_path)])
+        with open(tmp_path / "verification.csv", newline="") as file:
+            return [(row["case"], row["got"]) for row in csv.DictReader(file)]
+
+    assert lines("wave", 0.01) == [("wave", "0.01")]
+    assert lines("hole", 0.02) == [("hole", "0.02"), ("wave", "0.01")]  # in the order of the catalogue
+    assert "beside 1 cases of earlier runs" in capsys.readouterr().out
+    assert lines("wave", 0.03) == [("hole", "0.02"), ("wave", "0.03")]
+    assert lines("wave", None) == [("hole", "0.02")]  # it broke: what it once gave is no result of today
+    (tmp_path / "verification.csv").write_text("another,table\n1,2\n")
+    assert lines("wave", 0.01) == [("wave", "0.01")]
