@@ -41,6 +41,9 @@ STRICT = ConfigDict(strict=True, extra="forbid", allow_inf_nan=False)
 RENAMED = {"Rock": {"averaging": "nonlocal_mean"}, "Nonlocal": {"shade": "exclusion"}}
 """Fields of recorded scenes that have another name today, by class: records of before still load."""
 
+RETIRED = {"Nonlocal": {"wedge"}}
+"""Fields of recorded scenes that say nothing today, by class."""
+
 KNOWN: dict[str, type] = {}
 """Every class that a recorded scene may name: those of this package under `checked`."""
 
@@ -108,8 +111,8 @@ def _schema_with_type(kind: type, source, handler):
             return value
         if value.get("type") != kind.__name__:
             raise PydanticCustomError("other_type", "another type")
-        names = RENAMED.get(kind.__name__, {})
-        return {names.get(key, key): field for key, field in value.items() if key != "type"}
+        names, gone = RENAMED.get(kind.__name__, {}), {"type", *RETIRED.get(kind.__name__, ())}
+        return {names.get(key, key): field for key, field in value.items() if key not in gone}
 
     schema = dict(handler.resolve_ref_schema(handler(source)))
     schema["strict"] = False  # of a dataclass: its fields stay strict, but a dict may stand for it

@@ -97,11 +97,11 @@ class Nonlocal:
 
     @ti.func
     def own_decides(self, sim: ti.template(), p, normal):
-        """Only in the band of a crack whose normal is within 45 degrees: half a cell along it, its width across."""
+        """Only beside a crack whose normal is within 45 degrees: in its band, and no farther along it than a cell."""
         n, d = sim.particles.nearest_normal[p], sim.particles.to_crack[p]
-        along = normal.dot(n)
-        within = ti.abs(d[0] * n[1] - d[1] * n[0]) <= ti.static(0.5 * sim.grid.dx) and ti.abs(d.dot(n)) <= sim.band
-        return ti.select(within and 2.0 * along * along > 1.0, 1, 0)
+        across, along, turned = ti.abs(d.dot(n)), ti.abs(d[0] * n[1] - d[1] * n[0]), normal.dot(n)
+        beside = along <= ti.min(across, ti.static(sim.grid.dx)) and across <= sim.band
+        return ti.select(beside and 2.0 * turned * turned > 1.0, 1, 0)
 
     @ti.func
     def at_tip(self, sim: ti.template(), p):

@@ -114,7 +114,8 @@ def test_whole_numbers_will_do_for_numbers():
 
 
 def test_scene_recorded_before_the_move_still_loads(tmp_path):
-    """Written by the code of 2026-11-23; fields that are new since then have their defaults, others new names.
+    """Written by the code of 2026-11-23; fields that are new since then have their defaults, others new
+    names, and some are gone.
 
     Its mean is over one cell, which was allowed then and is refused by name now.
     """
@@ -134,6 +135,7 @@ def test_scene_recorded_before_the_move_still_loads(tmp_path):
     recorded["rock"]["after_failure"] |= {"dilation_angle": 0.0, "dilation_slip": 1e-3}
     recorded["rock"]["nonlocal_mean"] = recorded["rock"].pop("averaging")
     recorded["rock"]["nonlocal_mean"]["exclusion"] = recorded["rock"]["nonlocal_mean"].pop("shade")
+    assert recorded["rock"]["nonlocal_mean"].pop("wedge") == 25.0  # a law that there is no longer
     assert to_plain(read_scene(path)) == recorded
 
 
