@@ -16,7 +16,7 @@ FINE = {"dx": 0.5e-3, "length": 2e-3}
 """Cells of a half and of a quarter of the same length of the mean: one rock."""
 
 END = 2.0e-3
-"""Strain at the end, unless the load has fallen by a fifth before [1]: beyond that at which intact rock breaks."""
+"""Strain at the end, unless the load has fallen by half before [1]: beyond that at which intact rock breaks."""
 
 
 @dataclass(frozen=True)
@@ -36,10 +36,10 @@ class Told:
     residual: float
 
 
-def to_the_peak(name: str, *, strain_end: float = END, stop: bool = True, **overrides) -> Scene:
+def to_the_peak(name: str, **overrides) -> Scene:
     """A scene that ships, loaded until its load has fallen."""
-    scene = load_scene(name, strain_end=strain_end, **overrides)
-    return replace(scene, schedule=replace(scene.schedule, stop_after_drop=0.8 if stop else None))
+    scene = load_scene(name, strain_end=END, **overrides)
+    return replace(scene, schedule=replace(scene.schedule, stop_after_drop=0.5))
 
 
 def tell(scene: Scene) -> Told:

@@ -36,7 +36,7 @@ from rsmpm_ti.validate.fracture.cohesive_reference import BEAM, CONCRETE_ENERGY,
 
 THICKNESS = 50.0 * mm
 
-CELLS = (2.0 * mm, 1.0 * mm)
+CELLS = (2.0 * mm, 1.0 * mm, 0.5 * mm)
 """Sizes of a cell [m]; the last is held against the experiment."""
 
 PACE, END = 0.0127 * mm, 0.133 * mm
@@ -166,7 +166,7 @@ CASES = (
             Input("density", 2346.0, "kg/m^3", SOURCE),
             Input("tensile_strength", CONCRETE_STRENGTH, "Pa", SOURCE),
             Input("G_f_I", CONCRETE_ENERGY, "J/m^2", SOURCE),
-            Input("averaging_length", 2.0 * CELLS[-1], "m", "two cells, the least that the law allows"),
+            Input("averaging_length", 2.0 * min(CELLS), "m", "two cells, the least that the law allows"),
         ),
         judged=(DATUM,),
         quick=False,
