@@ -3,11 +3,13 @@
 import contextlib
 import errno
 import functools
+import multiprocessing
 import multiprocessing.util
 import os
 import signal
 import subprocess
 import sys
+import threading
 from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import ParamSpec, TextIO
@@ -71,6 +73,18 @@ def no_current_folder() -> Iterator[None]:
         yield
     finally:
         multiprocessing.util._args_from_interpreter_flags = before  # type: ignore[attr-defined]
+
+
+def end_with_parent() -> None:
+    """Called in a process of `multiprocessing`: it ends where the one that started it has ended, killed or not."""
+    parent = multiprocessing.parent_process()
+
+    def follow() -> None:
+        if parent is not None:
+            parent.join()
+            os._exit(1)
+
+    threading.Thread(target=follow, daemon=True).start()
 
 
 @contextlib.contextmanager

@@ -113,6 +113,40 @@ def test_ctrl_c_ends_a_command_that_spreads_cases_at_once(tmp_path):
     assert (run.returncode, said) == (130, "rsmpm_ti: stopped by Ctrl-C; what is complete is kept\n")
 
 
+@pytest.mark.parametrize("number", [signal.SIGTERM, signal.SIGKILL])
+def test_cases_end_with_their_command(tmp_path, number):
+    """Whoever kills a command by its number alone leaves nothing behind that goes on computing."""
+    command = [sys.executable, "-m", "rsmpm_ti.verify", "lab_residual", "--full", "--out", str(tmp_path)]
+    with subprocess.Popen(command, env=os.environ | {"PYTHONPATH": str(ROOT)}, stdout=subprocess.DEVNULL) as run:
+        until = time.monotonic() + 30.0
+        while len(children(run.pid)) < 2:  # the case, of minutes, and what keeps count of semaphores
+            assert run.poll() is None and time.monotonic() < until
+            time.sleep(0.05)
+        begun = children(run.pid)
+        run.send_signal(number)
+        run.wait(timeout=10)
+    until = time.monotonic() + 10.0
+    while any(map(is_running, begun)):
+        assert time.monotonic() < until, "cases go on"
+        time.sleep(0.05)
+
+
+def children(process: int) -> list[int]:
+    """Of all of its threads."""
+    found = []
+    for thread in Path(f"/proc/{process}/task").glob("*/children"):
+        with contextlib.suppress(OSError):
+            found += [int(pid) for pid in thread.read_text().split()]
+    return found
+
+
+def is_running(process: int) -> bool:
+    try:
+        return Path(f"/proc/{process}/stat").read_text().rpartition(")")[2].split()[0] != "Z"
+    except OSError:
+        return False
+
+
 SEEN = """
 import json, sys
 seen = lambda: [list(filter(None, sys.path)), list(sys.warnoptions), sys.flags.optimize, sys.flags.utf8_mode,

@@ -9,7 +9,7 @@ from pathlib import Path
 from rsmpm_ti.bench.measures import Measure, measure
 from rsmpm_ti.bench.pareto import Entry, pareto, recommendations
 from rsmpm_ti.bench.sweep import CELLS, SHAPES, Setting, sweep
-from rsmpm_ti.process import no_current_folder, without_ctrl_c
+from rsmpm_ti.process import end_with_parent, no_current_folder, without_ctrl_c
 from rsmpm_ti.records.files import complete, write_csv
 
 CSV_NAME, PICTURE_NAME = "speed_vs_error.csv", "speed_vs_error.png"
@@ -46,7 +46,7 @@ def run_sweep(cases: list[str], finest: bool, jobs: int, out: Path) -> list[Entr
     save()
     with no_current_folder():
         with without_ctrl_c():
-            pool = multiprocessing.get_context("spawn").Pool(jobs, maxtasksperchild=8)
+            pool = multiprocessing.get_context("spawn").Pool(jobs, initializer=end_with_parent, maxtasksperchild=8)
         with pool:
             for k, (setting, m, problem) in enumerate(pool.imap_unordered(_work, settings), 1):
                 head = f"{k}/{len(settings)} {setting.case} {setting.cells}: {setting.scheme}"

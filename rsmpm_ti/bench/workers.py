@@ -11,7 +11,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 
 from rsmpm_ti.bench.sweep import SHAPES
-from rsmpm_ti.process import no_current_folder, without_ctrl_c
+from rsmpm_ti.process import end_with_parent, no_current_folder, without_ctrl_c
 
 WIDTHS = {"linear": 2, "bspline": 3}
 """Shape functions that the twins know, and their nodes per axis."""
@@ -52,6 +52,7 @@ def simulation(runner: Runner, real):
 
 
 def _serve(pipe, precision: str, threads: int) -> None:
+    end_with_parent()
     import taichi as ti
 
     from rsmpm_ti.backend.start import start_taichi

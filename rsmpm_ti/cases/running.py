@@ -10,7 +10,7 @@ from pathlib import Path
 
 from rsmpm_ti.cases.case import Case, Row
 from rsmpm_ti.cases.report import draw
-from rsmpm_ti.process import no_current_folder, without_ctrl_c
+from rsmpm_ti.process import end_with_parent, no_current_folder, without_ctrl_c
 
 
 @dataclass(frozen=True)
@@ -85,4 +85,5 @@ def _alone(task: tuple) -> Finished:
 
 
 def _answer(sender, task: tuple) -> None:
+    end_with_parent()
     sender.send(_work(task))

@@ -10,7 +10,7 @@ from pathlib import Path
 from rsmpm_ti.errors import RockWarning, SceneError, UnstableRun
 from rsmpm_ti.lab.standard import Measured, Specimen
 from rsmpm_ti.output.earlier import summary_of
-from rsmpm_ti.process import no_current_folder, without_ctrl_c
+from rsmpm_ti.process import end_with_parent, no_current_folder, without_ctrl_c
 from rsmpm_ti.results.loading import load_result
 from rsmpm_ti.spec.scene_json import to_plain
 
@@ -67,7 +67,7 @@ def run_all(specimens: list[Specimen], out: Path, *, jobs: int, threads: int, re
         spawn = multiprocessing.get_context("spawn")
         with no_current_folder():
             with without_ctrl_c():
-                pool = spawn.Pool(min(jobs, len(waiting)), maxtasksperchild=1)
+                pool = spawn.Pool(min(jobs, len(waiting)), initializer=end_with_parent, maxtasksperchild=1)
             with pool:
                 yield from pool.imap_unordered(_run, waiting)
 

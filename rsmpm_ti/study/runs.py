@@ -14,7 +14,7 @@ import numpy as np
 
 from rsmpm_ti import __version__
 from rsmpm_ti.cases.case import Outcome
-from rsmpm_ti.process import no_current_folder, without_ctrl_c
+from rsmpm_ti.process import end_with_parent, no_current_folder, without_ctrl_c
 from rsmpm_ti.records.files import complete
 from rsmpm_ti.spec.library.places import PACKAGE, available
 
@@ -108,6 +108,6 @@ def run_all(runs: list[Run], folder: Path, jobs: int) -> Iterator[tuple[str, dic
         spawn, jobs = multiprocessing.get_context("spawn"), min(jobs, len(waiting))
         with no_current_folder():
             with without_ctrl_c():
-                pool = spawn.Pool(jobs, maxtasksperchild=1)
+                pool = spawn.Pool(jobs, initializer=end_with_parent, maxtasksperchild=1)
             with pool:
                 yield from pool.imap_unordered(_work, waiting)
