@@ -24,14 +24,18 @@ PINNED = {
         "radial stress at an axial one of -6.9 MPa, hybrid": 0.029,
         "differential stress under 90 MPa, hybrid": 0.002,
     },
-    "edge_notch": {"strength, notch of 2.03 l_ch": 0.197},
+    "edge_notch": {
+        "strength, notch of 2.03 l_ch": 0.056,
+        "what the crack cost per area": 0.083,
+        "largest distance of the crack from the notch's line": 0.85,
+    },
     "spall": {
-        "with fracture energy: depth of the first scab": 0.006,
+        "with fracture energy: depth of the first scab": 0.043,
         "with fracture energy: time of its first loss of strength": 0.030,
         "with fracture energy: velocity of the free face before": -0.008,
-        "with fracture energy: velocity of the scab over that of the face": -0.068,
-        "with fracture energy: strength read from the pull-back": -0.153,
-        "with fracture energy: what the crack cost per area": 0.306,
+        "with fracture energy: velocity of the scab over that of the face": -0.034,
+        "with fracture energy: strength read from the pull-back": -0.017,
+        "with fracture energy: what the crack cost per area": 0.224,
     },
     "scabs": {
         "scabs": 1.333,
@@ -43,20 +47,21 @@ PINNED = {
         "velocity of scab 3": 1.078,
     },
     "kalthoff": {
-        "with fracture energy: angle of the crack, tip to end": -13.2,
-        "with fracture energy: angle over its first 3 mm": -6.5,
-        "with fracture energy: largest speed over c_R": -0.390,
+        "with fracture energy: angle of the crack, tip to end": 10.7,
+        "with fracture energy: angle over its first 3 mm": -10.0,
+        "with fracture energy: largest speed over c_R": -0.360,
     },
-    "crack_speed": {"2 G_f: mean speed over c_R": -0.217, "2 G_f: largest speed over c_R": 0.075},
+    "crack_speed": {"2 G_f: mean speed over c_R": 0.190, "2 G_f: largest speed over c_R": 3.69},
 }
 """Distances of the quick tier from what judges it, of its coarse cells, misses among them: docs/validation.md has those
 of the full one. They are pins, so that a change of the solver that moves one is seen."""
 
-MOVED = {"westerly": 0.01, "zigong": 0.01, "carrara": 0.01, "edge_notch": 0.02}
-"""By how much a pinned distance may move: a uniform state, and a peak, to round-off and the time step it is read in."""
+MOVED = {"westerly": 0.01, "zigong": 0.01, "carrara": 0.01, "edge_notch": 0.02, "crack_speed": 0.5}
+"""By how much a pinned distance may move: a uniform state, and a peak, to round-off and the time step it is read in; a
+front that jumps, by a jump."""
 
-MOVED_BROKEN, MOVED_DEGREES = 0.1, 3.0
-"""The same where the number is read from cracks, which round-off may turn by a cell; and of an angle [degrees]."""
+MOVED_BROKEN, MOVED_UNITS = 0.1, {"degrees": 3.0, "cells": 1.0}
+"""The same where the number is read from cracks, which round-off may turn by a cell; and of angles and distances."""
 
 
 @pytest.mark.parametrize("name", [name for name, case in CASES.items() if case.quick])
@@ -65,7 +70,7 @@ def test_distance_to_experiment_is_the_one_that_was_told(name, tmp_path):
     rows = [row for row in run_case(CATALOGUE, name, full=False, out=tmp_path, threads=1) if row.tolerance < math.inf]
     assert {row.quantity for row in rows} == set(PINNED[name])
     for row in rows:
-        moved = MOVED_DEGREES if row.unit == "degrees" else MOVED.get(name, MOVED_BROKEN)
+        moved = MOVED_UNITS.get(row.unit, MOVED.get(name, MOVED_BROKEN))
         assert row.error == pytest.approx(PINNED[name][row.quantity], abs=moved), row.quantity
         assert len(row.reason) > 3, "every measured number has its source beside it"
     assert (tmp_path / f"{name}.png").stat().st_size > 10_000

@@ -12,12 +12,13 @@ The servo slows the platens while the plate breaks. At half the time scale the p
 """
 
 import math
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from rsmpm_ti import lab_rock, simulate, uniaxial_test
 from rsmpm_ti.cases.case import Outcome
+from rsmpm_ti.results.result import Result
 from rsmpm_ti.spec.boundaries import Wall
 from rsmpm_ti.spec.quasi_static.servo import Servo
 from rsmpm_ti.spec.regions import Slit
@@ -36,6 +37,12 @@ COMPARED = NOTCHES[2]
 TIME_SCALE, BEYOND = 4.0, 1.3
 """Strain at the end over that at which a whole plate reaches sigma_t."""
 
+THROUGH = 0.95
+"""Part of the peak by which the load has fallen where the plate has parted."""
+
+START, REST = 4.0, 0.93
+"""Cells of the notch's end past which the crack is looked at, and part of the width up to which."""
+
 SOURCE = "cohesive crack of the same rock by finite elements"
 
 ZONE = PLATE.plane_modulus * ROCK_ENERGY / ROCK_STRENGTH**2
@@ -52,8 +59,35 @@ def notches(depth: float, dx: float) -> tuple[Slit, ...]:
     return (Slit(centre=middle, length=depth + below, width=width, angle=0.0, rounded=True),)
 
 
-def strength(notch: float, dx: float) -> float:
-    """Nominal stress at the peak [Pa]."""
+@dataclass(frozen=True)
+class Broken:
+    """peak: nominal stress there [Pa]; cost: energy that the crack took per area [J/m^2], past the first START cells,
+    where it sets out from a blunt notch, and up to REST of the width; strayed: its largest distance there from the
+    notch's line [m], by the middle of what was dissipated."""
+
+    peak: float
+    cost: float = math.nan
+    strayed: float = math.nan
+
+
+def broken(result: Result, notch: float, dx: float) -> Broken:
+    peak = result.summary["peak_filtered_Pa"]
+    found = Broken(math.nan if peak is None else -float(peak))
+    if not notch:
+        return found
+    state = result.snapshot
+    x, energy = state.x - state.displacement, state.history["dissipated"] * state.volume
+    slices = np.arange(notch + START * dx, REST * PLATE.depth, 2.0 * dx)
+    at = np.digitize(x[:, 0], slices)
+    spent = np.array([energy[at == k].sum() for k in range(1, len(slices))])
+    moment = np.array([(energy * (x[:, 1] - PLATE.length))[at == k].sum() for k in range(1, len(slices))])
+    if not (spent > 0.0).all():
+        return found
+    return replace(found, cost=float(spent.mean()) / (2.0 * dx), strayed=float(np.abs(moment / spent).max()))
+
+
+def pulled(notch: float, dx: float, drop: float = 0.3) -> Broken:
+    """A run until its load has fallen by a part of the peak."""
     scene = uniaxial_test(
         title="Plate with an edge notch in tension",
         rock=lab_rock(length=2.0 * dx),
@@ -71,9 +105,8 @@ def strength(notch: float, dx: float) -> float:
     )
     mirror = Wall(axis=0, side="upper", position=PLATE.depth)
     loading = replace(scene.loading, boundaries=(*scene.loading.boundaries, mirror))
-    scene = replace(scene, loading=loading, schedule=replace(scene.schedule, stop_after_drop=0.3))
-    peak = simulate(scene, threads=1).summary["peak_filtered_Pa"]
-    return math.nan if peak is None else -float(peak)
+    scene = replace(scene, loading=loading, schedule=replace(scene.schedule, stop_after_drop=drop))
+    return broken(simulate(scene, threads=1), notch, dx)
 
 
 def toughness_stress(notch: np.ndarray) -> np.ndarray:
@@ -86,13 +119,22 @@ def toughness_stress(notch: np.ndarray) -> np.ndarray:
 def depths(full: bool) -> Outcome:
     stored = {line["notch_m"]: line for line in read()["plate"]}
     dx = DX if full else COARSE
-    found = {notch: strength(notch, dx) for notch in ((0.0, *NOTCHES) if full else (COMPARED,))}
-    rows = []
+    runs = {
+        notch: pulled(notch, dx, THROUGH if notch == COMPARED else 0.3)
+        for notch in ((0.0, *NOTCHES) if full else (COMPARED,))
+    }
+    found, rows = {notch: run.peak for notch, run in runs.items()}, []
     for notch, got in found.items():
         name = f"strength, notch of {notch / ZONE:.2f} l_ch" if notch else "strength without a notch"
         expected = stored[notch]["peak_Pa"] if notch else ROCK_STRENGTH
         rows.append(compare(name, "MPa", expected / MPa, got / MPa, 0.05, SOURCE if notch else "sigma_t"))
-    coarse = strength(COMPARED, COARSE) if full else found[COMPARED]
+    crack = runs[COMPARED]
+    rows += [
+        compare("what the crack cost per area", "J/m^2", ROCK_ENERGY, crack.cost, 0.05, "G_f of the rock"),
+        compare("largest distance of the crack from the notch's line", "cells", 0.0, crack.strayed / dx, 2.0,
+                "a straight notch, pulled evenly: Cotterell & Rice 1980, Int. J. Fract. 16:155", absolute=True),
+    ]  # fmt: skip
+    coarse = pulled(COMPARED, COARSE).peak if full else found[COMPARED]
     if full:
         name = f"the same, notch of {COMPARED / ZONE:.2f} l_ch, dx {COARSE / mm:g} mm"
         rows.append(predict(name, "MPa", coarse / MPa, "how far cell, notch's width and mean matter"))

@@ -17,7 +17,8 @@ costs: near a face a crack costs less (Duan, Hu & Wittmann 2007, Eng. Fract. Mec
 the beams peak, the cohesive crack is inside the band.
 
 The beam is 140 mm long, not 175: nothing acts beyond its supports. No servo, and the pace of PACE: chosen after runs at
-several, as the fastest at which the load swings by no more than 5 %; that it is slow enough was not shown.
+several, as the fastest at which the load swings by no more than 5 %. At a third of it the peak, which is one of the
+swings, falls by 4 % at dx 2 mm, and the energy by 2.6 %.
 """
 
 from dataclasses import dataclass, replace
