@@ -25,7 +25,8 @@ from rsmpm_ti.spec.seeding import Jittered
 
 DEPTH, CELLS, QUICK_CELLS = 2.0, 40, 30
 """Depth of a beam, or radius of a half disc, over l_ch; cells in it. The mean stress that decides on tension is then
-over l_ch/10, and hardly delays a crack at the notch; deeper specimens break off at once, and their work is not read."""
+over l_ch/10, and delays a crack at the notch by some per cent of the load: docs/lab.md. Deeper specimens break off at
+once, and their work is not read."""
 
 NOTCH = 0.5
 """Depth of a notch over that of the beam, or the radius: ISRM (2014), 0.4 to 0.6."""
