@@ -52,6 +52,7 @@ READ = {
     "flawed, confined": STRENGTHS,
     "intact at 5 MPa": {"peak": "peak", "residual": "stress at the end"},
 }
+COLOURS = {"onset": "C0", "peak": "C1", "residual": "C2"}
 WHY = "what depends on an energy that nobody measured for this rock; nothing judges it"
 
 
@@ -59,11 +60,18 @@ def _draw(figure, found: dict[str, list[Told]]) -> None:
     panels = figure.subplots(1, len(TESTS))
     for axes, (name, series) in zip(panels, found.items(), strict=True):
         for key, word in READ[name].items():
-            axes.semilogx([OWN * k for k in FACTORS], [getattr(t, key) / MPa for t in series], "o-", label=word)
+            axes.semilogx(
+                [OWN * k for k in FACTORS],
+                [getattr(t, key) / MPa for t in series],
+                "o-",
+                color=COLOURS[key],
+                label=word,
+            )
         axes.set(xlabel="G_f_II [J/m^2]", title=name, ylim=(0, None))
         axes.axvspan(1e3, 1e4, color="0.9", zorder=0)
     panels[0].set_ylabel("nominal stress [MPa]")
-    panels[0].legend(fontsize="small")
+    for axes in (panels[0], panels[-1]):
+        axes.legend(fontsize="small", loc="lower right")
     figure.suptitle("What depends on the energy of a crack in shear; grey: intact granite")
 
 
