@@ -64,7 +64,7 @@ def run_suite(suite: Suite, arguments: list[str] | None = None) -> int:
     jobs = min(options.jobs, len(names))
     rows: list[tuple[str, Row]] = []
     broken, order = 0, list(cases)
-    table = kept_table(out / suite.table, suite.layout, set(cases) - set(names))
+    table = kept_table(out / suite.table, suite.layout, set(cases))
     print_head(suite.layout)
     threads = suite.threads or max(1, (os.cpu_count() or 1) // jobs)
     for done in run_cases(suite.catalogue, names, options.full, out, jobs, threads):
@@ -74,7 +74,8 @@ def run_suite(suite: Suite, arguments: list[str] | None = None) -> int:
             broken += 1
         new = [(done.name, row) for row in done.rows]
         rows += new
-        table = sorted(table + [suite.layout.cells(*entry) for entry in new], key=lambda line: order.index(line[0]))
+        table = [line for line in table if line[0] != done.name] + [suite.layout.cells(*entry) for entry in new]
+        table.sort(key=lambda line: order.index(line[0]))
         write_table(out / suite.table, table, suite.layout)  # at once: what has been found is not lost with the rest
         if suite.write is not None:
             suite.write(out, new, options.full, table)

@@ -43,15 +43,15 @@ VERDICTS = Layout(
 """Of rows that pass or miss."""
 
 
-def kept_table(path: Path, layout: Layout, others: set[str]) -> list[list[str]]:
-    """Lines of an earlier table about other cases, which stay; none where the table is no such one."""
+def kept_table(path: Path, layout: Layout, cases: set[str]) -> list[list[str]]:
+    """Lines of an earlier table about these cases; none where the table is no such one."""
     try:
         with open(path, newline="", encoding="utf-8") as file:
             head, *lines = csv.reader(file)
     except (OSError, ValueError, csv.Error):
         return []
     width = len(layout.columns)
-    return [line for line in lines if len(line) == width and line[0] in others] if tuple(head) == layout.columns else []
+    return [line for line in lines if len(line) == width and line[0] in cases] if tuple(head) == layout.columns else []
 
 
 def write_table(path: Path, table: list[list[str]], layout: Layout = VERDICTS) -> None:

@@ -72,7 +72,7 @@ def clear_nonlocal_sums(sim: ti.template()):
             sim.nonlocal_sums.sums[i] = zero
         sim.nonlocal_sums.peak[i] = 0.0
     for _ in range(1):
-        sim.nonlocal_sums.count[None], sim.nonlocal_sums.any_overloaded[None] = 0, 0
+        sim.nonlocal_sums.count[None] = 0
 
 
 @ti.func
@@ -177,7 +177,7 @@ def read_crack_strains(sim: ti.template()):
 
 @ti.kernel
 def mark_overloaded(sim: ti.template(), limit: float):
-    """Which nodes, and whether any, have a mean sigma_1 of at least `limit` [Pa].
+    """Which nodes have a mean sigma_1 of at least `limit` [Pa].
 
     The mean stress at a particle is a weighted mean of those at its nodes and sigma_1 is convex, so a particle without
     an overloaded node cannot be overloaded: most are spared the reading.
@@ -188,7 +188,6 @@ def mark_overloaded(sim: ti.template(), limit: float):
             sigma = ti.Vector([total[0], total[1], total[2], total[3]])
             if extreme_principals(sigma)[0] >= limit * total[4]:
                 overloaded = 1
-                sim.nonlocal_sums.any_overloaded[None] = 1
         sim.nonlocal_sums.overloaded[i] = overloaded
 
 

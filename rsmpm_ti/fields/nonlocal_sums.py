@@ -26,11 +26,7 @@ class NonlocalSums:
         self.reach, self.filter_weights = len(filter_weights) // 2, ti.field(real, len(filter_weights))
         self.filter_weights.from_numpy(np.array(filter_weights))
         self.sums, self.other = (ti.Vector.field(7, real, grid.nodes) for _ in range(2))
-        self.peak, self.overloaded, self.any_overloaded = (
-            ti.field(real, grid.nodes),
-            ti.field(ti.i32, grid.nodes),
-            ti.field(ti.i32, ()),
-        )
+        self.peak, self.overloaded = ti.field(real, grid.nodes), ti.field(ti.i32, grid.nodes)
         # what a look needs of each tile: see `needed_tiles` in failure/nonlocal_fields.py
         tiles = tuple(-(-n // TILE) for n in grid.nodes)
         self.hot, self.needed, self.any_hot = ti.field(ti.i32, tiles), ti.field(ti.i32, tiles), ti.field(ti.i32, ())

@@ -108,7 +108,8 @@ class Particles:
         real_fields += self.history.real_fields
         whole_fields += self.history.whole_fields
         if any(averaging(scene)):
-            # overload is of one step only; from here to the nearest crack, and its normal, or 0 where none is near
+            # overload is of one step only; from here to the nearest particle in which the mean stress began a crack,
+            # and its normal, both as they were then, or 0 where none is near
             self.overload, self.to_crack, self.nearest_normal = ti.field(real, count), vector(dim), vector(dim)
             # crack strain of the rock around, by which tensile strength is lost: as last averaged, and the largest
             self.crack_strain_nonlocal, self.crack_strain_max_nonlocal = ti.field(real, count), ti.field(real, count)

@@ -97,7 +97,10 @@ class Nonlocal:
 
     @ti.func
     def own_decides(self, sim: ti.template(), p, normal):
-        """Only beside a crack whose normal is within 45 degrees: in its band, and no farther along it than a cell."""
+        """Only beside a crack whose normal is within 45 degrees: in its band, and no farther along it than a cell.
+
+        The check of every step asks with the normal of own tension, that of the mean stress with its own normal.
+        """
         n, d = sim.particles.nearest_normal[p], sim.particles.to_crack[p]
         across, along, turned = ti.abs(d.dot(n)), ti.abs(d[0] * n[1] - d[1] * n[0]), normal.dot(n)
         beside = along <= ti.min(across, ti.static(sim.grid.dx)) and across <= sim.band

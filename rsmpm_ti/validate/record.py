@@ -47,10 +47,11 @@ def _page(table: list[list[str]], quick: set[str]) -> str:
 
 
 def _earlier(path: Path) -> dict:
-    """Cases of an earlier validation.json; none where it is no such one."""
+    """Cases of an earlier validation.json that say what is asked of them here; none where it is no such file."""
     try:
-        return json.loads(path.read_text(encoding="utf-8"))["cases"]
-    except (OSError, ValueError, KeyError, TypeError):
+        cases = json.loads(path.read_text(encoding="utf-8"))["cases"]
+        return {name: case for name, case in cases.items() if isinstance(case.get("full"), bool)}
+    except (OSError, ValueError, KeyError, TypeError, AttributeError):
         return {}
 
 

@@ -207,6 +207,18 @@ def test_crack_grows_where_the_hoop_stress_is_largest(K_I, K_II, angle):
     assert np.std(found) < 20.0
 
 
+@pytest.mark.parametrize("own, mean, cracks", [(2.1, 1.0, True), (2.1, -1.0, True), (1.9, 3.0, False)])
+def test_own_tension_says_when_at_a_tip(own, mean, cracks):
+    """One particle 1.5 mm ahead of a crack and its surroundings; 2 MPa of strength."""
+    sim = rested(simulation())
+    crack = particle_near(sim, 14.3, 16.3)
+    ahead_of(sim, [crack], 0.5 * math.pi)
+    ahead = particle_near(sim, 15.8, 16.3)
+    size = np.full(sim.particles.count, mean)
+    size[ahead] = own
+    assert (ahead in look(sim, pulled_along(90.0, size))) is cracks
+
+
 @pytest.mark.parametrize("degrees, cracks", [(90.0, True), (65.0, True), (55.0, False), (0.0, False), (-65.0, True)])
 def test_tension_across_the_line_to_a_crack_counts_near_it(degrees, cracks):
     """2.7 sin^2 MPa of a mean stress along x, 2 MPa of strength: from 59.4 degrees on, 3 mm from a crack."""

@@ -16,7 +16,7 @@ WITHIN = {
     "triaxial": {"cohesion": 0.03, "friction angle": 0.03},
     "brazilian": {"BTS less the arc's part": 0.1},
     "scb": {"K_Ic by the peak load": 0.1},
-    "bend": {"K_Ic by the effective crack": 0.05},
+    "bend": {},
 }
 """How far each quantity may be off the sheet. Inertia may be a per cent ('auto'), and a running median takes up to
 another off a peak that breaks off at once. A crack that costs energy bears more than the strength in a disc, and a

@@ -179,6 +179,9 @@ def test_records_keep_what_is_known_of_other_cases(tmp_path):
         ("westerly", False, "b"),
         ("zigong", True, "a"),
     ]
+    (tmp_path / "validation.json").write_text(json.dumps({"cases": {"zigong": {"about": "of an older version"}}}))
+    write_records(CATALOGUE, tmp_path, more, False, [cells(*entry) for entry in (*more, *rows)])
+    assert list(json.loads((tmp_path / "validation.json").read_text(encoding="utf-8"))["cases"]) == ["westerly"]
     page = (tmp_path / "validation.md").read_text(encoding="utf-8")
     assert "**`westerly`**, quick form" in page and "**`zigong`**\n" in page
 

@@ -123,5 +123,15 @@ def test_a_run_of_some_cases_keeps_what_is_known_of_the_others(tmp_path, capsys,
     assert "beside 1 cases of earlier runs" in capsys.readouterr().out
     assert lines("wave", 0.03) == [("hole", "0.02"), ("wave", "0.03")]
     assert lines("wave", None) == [("hole", "0.02")]  # it broke: what it once gave is no result of today
+    assert lines("wave", 0.04) == [("hole", "0.02"), ("wave", "0.04")]
+
+    def stopped(*_):
+        yield Finished("hole", (at_most("a", 0.05, 0.1, "because"),), 1.0)
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr(command, "run_cases", stopped)
+    assert main(["hole", "wave", "--out", str(tmp_path)]) == 130
+    with open(tmp_path / "verification.csv", newline="") as file:  # what was not come to is as it was
+        assert [row["got"] for row in csv.DictReader(file)] == ["0.05", "0.04"]
     (tmp_path / "verification.csv").write_text("another,table\n1,2\n")
     assert lines("wave", 0.01) == [("wave", "0.01")]
