@@ -1,5 +1,6 @@
 """Fixtures that several test files share."""
 
+import signal
 from functools import partial
 
 import pytest
@@ -32,6 +33,12 @@ def pytest_collection_modifyitems(items) -> None:
         # a start frees every field: what a test beside it had kept would be read from memory that is gone
         if "restart_taichi" in item.fixturenames and item.path in keepers:
             raise pytest.UsageError(f"{item.nodeid} starts Taichi anew, other tests of its file share one: move it")
+
+
+def pytest_sessionstart() -> None:
+    """Ctrl-C reaches tests and what they start: a shell has what it runs in the background ignore it, and so would they."""
+    if signal.getsignal(signal.SIGINT) == signal.SIG_IGN:
+        signal.signal(signal.SIGINT, signal.default_int_handler)
 
 
 def start(real, threads: int = 2) -> None:

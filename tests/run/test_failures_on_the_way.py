@@ -122,8 +122,7 @@ def test_signal_that_was_ignored_before_is_ignored(tmp_path):
 
 @pytest.mark.parametrize("after", [1.0, *(pytest.param(t, marks=pytest.mark.validation) for t in (2.0, 4.0))])
 def test_ctrl_c_during_start_up_is_one_line(tmp_path, after):
-    # a shell gives what it runs in the background an ignored SIGINT, and a run leaves what is ignored as it is
-    run = started(tmp_path / "out", preexec_fn=lambda: signal.signal(signal.SIGINT, signal.SIG_DFL))
+    run = started(tmp_path / "out")
     time.sleep(after)
     run.send_signal(signal.SIGINT)
     out, err = run.communicate(timeout=60)
