@@ -36,7 +36,7 @@ def pytest_collection_modifyitems(items) -> None:
 
 
 def pytest_sessionstart() -> None:
-    """Ctrl-C reaches tests and what they start: a shell has what it runs in the background ignore it, and so would they."""
+    """Ctrl-C reaches tests and what they start, which would ignore it as what a shell runs in the background does."""
     if signal.getsignal(signal.SIGINT) == signal.SIG_IGN:
         signal.signal(signal.SIGINT, signal.default_int_handler)
 

@@ -5,7 +5,7 @@ import os
 import sys
 from pathlib import Path
 
-from rsmpm_ti.cases.report import draw, print_head, print_rows, write_table
+from rsmpm_ti.cases.report import VERDICTS, draw, print_head, print_rows, write_table
 from rsmpm_ti.process import command, tell
 from rsmpm_ti.study.catalogue import STUDIES
 from rsmpm_ti.study.runs import all_kept, run_all
@@ -52,7 +52,7 @@ def main(arguments: list[str] | None = None) -> int:
             return 2
         outcome = study.finish({run.tag: results[run.tag] for run in runs if run.tag in results})
         draw(folder / f"{name}.png", outcome)
-        write_table(folder / f"{name}.csv", [(name, row) for row in outcome.rows])
+        write_table(folder / f"{name}.csv", [VERDICTS.cells(name, row) for row in outcome.rows])
         print_head()
         print_rows(name, outcome.rows, total)
         misses += sum(not row.passed for row in outcome.rows)

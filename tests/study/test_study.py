@@ -1,5 +1,6 @@
 """Families of runs: what is kept and run again, how wings are read, and how the command behaves."""
 
+import csv
 import math
 import subprocess
 import sys
@@ -9,7 +10,7 @@ import numpy as np
 import pytest
 from matplotlib.figure import Figure
 
-from rsmpm_ti.cases.case import Outcome
+from rsmpm_ti.cases.case import Outcome, at_most
 from rsmpm_ti.study import fracture_energy, runs
 from rsmpm_ti.study.__main__ import main
 from rsmpm_ti.study.catalogue import STUDIES
@@ -105,7 +106,7 @@ def test_kept_only_draws_what_there_is_and_refuses_where_there_is_nothing(tmp_pa
 
     def finish(results):
         seen.append(sorted(results))
-        return Outcome((), lambda figure: None)
+        return Outcome((at_most("largest square", 4.0, 5.0, "2^2"),), lambda figure: None)
 
     monkeypatch.setitem(STUDIES, "toy", Study("toy", "two runs", lambda quick: plan, finish))
     command = ["toy", "--kept", "--out", str(tmp_path)]
@@ -115,6 +116,8 @@ def test_kept_only_draws_what_there_is_and_refuses_where_there_is_nothing(tmp_pa
     np.savez(tmp_path / "toy" / "b.npz", stamp=np.array(runs.stamp(plan[1])), values=np.arange(3))
     assert main(command) == 0 and seen == [["b"]]
     assert (tmp_path / "toy" / "toy.png").is_file()
+    (row,) = csv.DictReader((tmp_path / "toy" / "toy.csv").open(encoding="utf-8"))
+    assert (row["case"], row["quantity"], row["got"], row["verdict"]) == ("toy", "largest square", "4", "pass")
 
 
 def test_file_that_is_no_result_is_run_over(tmp_path):
