@@ -81,6 +81,6 @@ def run_suite(suite: Suite, arguments: list[str] | None = None) -> int:
             suite.write(out, new, options.full, table)
     misses = sum(not row.passed for _, row in rows) + broken
     others = len({line[0] for line in table} - set(names))
-    stays = f", beside {others} cases of earlier runs" if others else ""
+    stays = f"; of earlier runs it keeps {others} more" if others else ""
     print(f"{len(rows)} numbers, {misses} misses; table and pictures in {out}{stays}")
     return 1 if broken or (misses and suite.misses_fail) else 0

@@ -120,7 +120,7 @@ def test_a_run_of_some_cases_keeps_what_is_known_of_the_others(tmp_path, capsys,
 
     assert lines("wave", 0.01) == [("wave", "0.01")]
     assert lines("hole", 0.02) == [("hole", "0.02"), ("wave", "0.01")]  # in the order of the catalogue
-    assert "beside 1 cases of earlier runs" in capsys.readouterr().out
+    assert "of earlier runs it keeps 1 more" in capsys.readouterr().out
     assert lines("wave", 0.03) == [("hole", "0.02"), ("wave", "0.03")]
     assert lines("wave", None) == [("hole", "0.02")]  # it broke: what it once gave is no result of today
     assert lines("wave", 0.04) == [("hole", "0.02"), ("wave", "0.04")]
