@@ -41,7 +41,7 @@ def evaluate_overload(sim: ti.template()):
         if belongs(sim, p) and particles.mode[p] == 0 and is_overloaded(sim, p):
             mean = mean_stress(sim, p)
             normal = principal_normal(mean)
-            if rule.own_decides(sim, p, normal) == 0:
+            if rule.own_part(sim, p, normal) < 1.0:
                 load = ti.max(rule.tension_across(sim, p, mean) / tensile_strength(sim, p), LEAST_OVERLOAD)
                 particles.overload[p] = load
                 particles.history.crack_normal[p] = normal

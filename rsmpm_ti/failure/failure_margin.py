@@ -22,14 +22,14 @@ from rsmpm_ti.rock.tensors import extreme_principals, principal_normal
 def tensile_load(sim: ti.template(), p, own):
     """Load factor in tension: `own`, by the particle's own stress, or by what decides instead with a nonlocal mean.
 
-    That is the mean stress, and own stress at a crack's tip and in its band.
+    That is the mean stress, own stress at a crack's tip and in its band, and part of it near a crack.
     """
     load = own
     if ti.static(sim.is_nonlocal):
         rule = sim.rock.nonlocal_mean
-        load = ti.select(rule.own_decides(sim, p, principal_normal(sim.particles.sigma[p])) == 1, own, 0.0)
+        load = rule.own_part(sim, p, principal_normal(sim.particles.sigma[p])) * own
         mean = mean_stress(sim, p)
-        if rule.own_decides(sim, p, principal_normal(mean)) == 0:
+        if rule.own_part(sim, p, principal_normal(mean)) < 1.0:
             deciding = mean
             if rule.at_tip(sim, p):
                 deciding = sim.particles.sigma[p]

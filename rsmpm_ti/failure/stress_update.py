@@ -52,8 +52,10 @@ def failure_by_own_stress(sim: ti.template(), p, extremes):
     """Mode by a particle's own stress: 0, 1 or 2. Tension may be for a mean stress to judge: nonlocal_mean.py."""
     load = load_factors(sim, p, extremes)
     mode = sim.rock.criterion.mode(load[0], load[1])
-    if mode == 1 and sim.rock.nonlocal_mean.own_decides(sim, p, principal_normal(sim.particles.sigma[p])) == 0:
-        mode = ti.select(own_shear_load(sim, load) >= 1.0, 2, 0)
+    if mode == 1:
+        part = sim.rock.nonlocal_mean.own_part(sim, p, principal_normal(sim.particles.sigma[p]))
+        if sim.rock.criterion.mode(part * load[0], load[1]) != 1:
+            mode = ti.select(own_shear_load(sim, load) >= 1.0, 2, 0)
     return mode
 
 

@@ -23,6 +23,11 @@ AHEAD = math.tan(math.radians(15.0))
 """Distance along a crack over that across it from which on rock is ahead of it and not beside: cracks turn by 70.5
 degrees at most (Erdogan & Sih 1963), and what pulls along the faces of a sheared one is not what makes it longer."""
 
+OVERSHOOT = 1.5
+"""Most that rock near a crack bears of its own tension, over its strength. About a tip sigma_1 is at most 1.30 times
+the tension that makes the crack grow (Williams 1957, J. Appl. Mech. 24:109: at 60 degrees off its line): what bears
+more is not of the tip's field, and no other rule would let it crack."""
+
 
 @ti.data_oriented
 @checked("nonlocal_mean")
@@ -33,9 +38,10 @@ class Local:
     acts = False
 
     @ti.func
-    def own_decides(self, sim: ti.template(), p, normal):
-        """1 if a particle's own tension, with the larger in-plane stress along `normal`, may break it; else 0."""
-        return 1
+    def own_part(self, sim: ti.template(), p, normal):
+        """Part of a particle's own tension, with the larger in-plane stress along `normal`, that counts in its check
+        of every step: 1 where its own stress decides."""
+        return 1.0
 
     @ti.func
     def own_tension(self, sim: ti.template(), sigma_1):
@@ -80,7 +86,8 @@ class Nonlocal:
     radius, as of Cervera & Chiumenti (2006), Comput. Methods Appl. Mech. Eng. 196:304, sec. 4. At a tip, no farther
     than a crack band is wide, a particle's own tension across that line says when, since the mean, part of it over
     what the crack has relieved, is late; the mean says which. What lies in the band of a crack cracks by its own
-    stress, since a band opens as a whole.
+    stress, since a band opens as a whole, and so does what is near a crack once its own tension is OVERSHOOT times its
+    strength: a crack that is shut or only begins to open relieves nothing, and rock beside it would bear any tension.
 
     A cracked particle loses tensile strength by the opening of the crack that it is part of, and cohesion by the slip
     of the band that it is part of, read from the mean crack strain and the mean slip over the same length, not by its
@@ -96,15 +103,17 @@ class Nonlocal:
     acts = True
 
     @ti.func
-    def own_decides(self, sim: ti.template(), p, normal):
-        """Only beside a crack whose normal is within 45 degrees: in its band, and no farther along it than a cell.
+    def own_part(self, sim: ti.template(), p, normal):
+        """1 beside a crack whose normal is within 45 degrees, in its band, and no farther along it than a cell; 0 where
+        no crack is near; 1/OVERSHOOT elsewhere.
 
         The check of every step asks with the normal of own tension, that of the mean stress with its own normal.
         """
         n, d = sim.particles.nearest_normal[p], sim.particles.to_crack[p]
         across, along, turned = ti.abs(d.dot(n)), ti.abs(d[0] * n[1] - d[1] * n[0]), normal.dot(n)
         beside = along <= ti.min(across, ti.static(sim.grid.dx)) and across <= sim.band
-        return ti.select(beside and 2.0 * turned * turned > 1.0, 1, 0)
+        near = ti.select(d.norm() > 0.0, 1.0 / OVERSHOOT, 0.0)
+        return ti.select(beside and 2.0 * turned * turned > 1.0, 1.0, near)
 
     @ti.func
     def at_tip(self, sim: ti.template(), p):

@@ -34,7 +34,7 @@ PINNED = {
         "with fracture energy: time of its first loss of strength": 0.030,
         "with fracture energy: velocity of the free face before": -0.008,
         "with fracture energy: velocity of the scab over that of the face": -0.034,
-        "with fracture energy: strength read from the pull-back": -0.017,
+        "with fracture energy: strength read from the pull-back": -0.120,
         "with fracture energy: what the crack cost per area": 0.224,
     },
     "scabs": {
