@@ -18,7 +18,7 @@ def scene(
     length: Length = 1.0 * mm,
     dx: Length = 0.5 * mm,
     seed: int = 1,
-    strain_end: float = 1.0e-3,
+    strain_end: float = 1.5e-3,
     time_scale: float | str = 16.0,
 ) -> Scene:
     flaw = Slit(centre=(25.0 * mm, 50.0 * mm), length=flaw_length, width=flaw_width, angle=flaw_angle, rounded=True)

@@ -14,7 +14,7 @@ def scene(
     *,
     normal_stress: Pressure = 2.5 * MPa,
     displacement_end: Length = 0.15 * mm,
-    G_f_II: FractureEnergy = 24.0,
+    G_f_II: FractureEnergy = 240.0,
     residual_friction_angle: Angle = 30.0,
     length: Length = 2.0 * mm,
     dx: Length = 1.0 * mm,

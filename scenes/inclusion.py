@@ -37,7 +37,7 @@ def scene(
     length: Length = 1.0 * mm,
     dx: Length = 0.5 * mm,
     seed: int = 1,
-    strain_end: float = 8.5e-4,
+    strain_end: float = 1.2e-3,
     time_scale: float = 16.0,
 ) -> Scene:
     width, height, room = 60.0 * mm, 100.0 * mm, 10.0 * mm

@@ -16,7 +16,7 @@ def scene(
     correlation_length: Length = 2.0 * mm,
     length: Length = 1.0 * mm,
     dx: Length = 0.5 * mm,
-    strain_end: float = 1.2e-3,
+    strain_end: float = 1.3e-3,
     time_scale: float | str = 10.0,
 ) -> Scene:
     strength = Weibull(

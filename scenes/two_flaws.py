@@ -9,7 +9,8 @@ import math
 
 from rsmpm_ti import Angle, Jittered, Length, MPa, Output, Scene, Slit, lab_rock, mm, uniaxial_test
 
-QUICK = {"dx": 1.0 * mm, "length": 2.0 * mm}  # a coarser rock: its mean is over two cells at least
+# a coarser rock, which breaks later: its mean is over two cells at least
+QUICK = {"dx": 1.0 * mm, "length": 2.0 * mm, "strain_end": 1.25e-3}
 
 
 def scene(
@@ -22,7 +23,7 @@ def scene(
     length: Length = 1.0 * mm,
     dx: Length = 0.5 * mm,
     seed: int = 1,
-    strain_end: float = 9.0e-4,
+    strain_end: float = 1.0e-3,
     time_scale: float | str = 16.0,
 ) -> Scene:
     along, across = math.radians(flaw_angle), math.radians(flaw_angle + bridging_angle)

@@ -34,6 +34,9 @@ LENGTH = 2e-3
 BLOCK_WIDTH, BLOCK_HEIGHT = 10.0 * mm, 30.0 * mm
 """Jacketed block that slides on an inclined seam, 2 cells wide: the width that a crack is assumed to slip over."""
 
+SLIP_ENERGY = 24.0
+"""G_f_II of the block [J/m^2], a tenth of the lab's rock's, so that a short slip takes all of it."""
+
 COHESION, JACKET = 3.0 * MPa, 6.0 * MPa
 """Of the block, and the pressure around it, which keeps all of it in compression. The seam has lost all cohesion at a
 slip of 2 G_f_II/(SEAM_STRENGTH COHESION) = 23 um, more than the rest of the block springs back by (10 um)."""
@@ -123,7 +126,7 @@ def slide_seam(*, dx: float, angle: float) -> dict:
 
     Of the middle half of the seam [J/m^2]: where it meets the faces, wedges of the block shear too.
     """
-    lab = load_scene("cube_lab", dx=dx, length=LENGTH).rock
+    lab = load_scene("cube_lab", dx=dx, length=LENGTH, G_f_II=SLIP_ENERGY).rock
     seam = Seam(height=2.0 * dx, middle=(0.5 * BLOCK_WIDTH, 0.5 * BLOCK_HEIGHT), angle=angle)
     criterion = MohrCoulomb(cohesion=COHESION, friction_angle=0.0, tensile_strength=0.35 * COHESION)
     law = replace(lab.after_failure, residual_friction_angle=0.0)

@@ -103,7 +103,7 @@ def test_law_and_softening_are_chosen_by_a_word():
 
 def test_sheet_of_the_papers_rock_is_the_rock_of_the_lab_scenes():
     sheet = {"density": 2600, "E": "17 GPa", "nu": 0.14, "cohesion": "5.95 MPa", "phi": "40 deg", "sigma_t": "2 MPa"}
-    assert Rock.from_lab(**sheet, G_f=5, G_f_II=24) == lab_rock()
+    assert Rock.from_lab(**sheet, G_f=5, G_f_II=240) == lab_rock()
 
 
 @pytest.mark.parametrize(

@@ -16,7 +16,7 @@ COARSE = {
     "disc_lab": {"dx": 1.25e-3, "length": 2.5e-3, "flaw_width": 3.75e-3, "time_scale": 60.0, "strain_end": 2.4e-4},
     "confined": {"dx": 1.25e-3, "length": 2.5e-3, "flaw_width": 3.75e-3, "time_scale": 60.0},
     "two_flaws": {"dx": 1.25e-3, "length": 2.5e-3, "flaw_width": 3.75e-3, "time_scale": 60.0, "strain_end": 7.5e-4},
-    "intact_weibull": {"dx": 1.25e-3, "length": 2.5e-3, "time_scale": 80.0, "strain_end": 1.0e-3},
+    "intact_weibull": {"dx": 1.25e-3, "length": 2.5e-3, "time_scale": 80.0, "strain_end": 1.3e-3},
     "notched_beam": {"depth": 32e-3, "notch": 16e-3, "deflection_end": 3.2e-5, "dx": 2e-3, "length": 4e-3,
                      "time_scale": 6.0},
     "semicircular_bend": {"dx": 2e-3, "length": 4e-3, "deflection_end": 3e-5},

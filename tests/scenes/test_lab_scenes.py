@@ -34,9 +34,10 @@ def test_flaws_at_other_angles_separate_their_faces(name, angles, dx):
 
 
 def test_fracture_energies_of_the_lab_rock_are_those_of_its_toughness():
-    """Zhang (2002): K_Ic = sigma_t/6.88 in MPa sqrt(m); plane strain: G_f = K^2 (1 - nu^2)/E; Al-Shayea (2005): 2.2."""
+    """Zhang (2002): K_Ic = sigma_t/6.88 in MPa sqrt(m); plane strain: G_f = K^2 (1 - nu^2)/E. In shear intact granite
+    under pressure takes 1.7 to 8.6 kJ/m^2 (Moore & Lockner 1995), 29 to 143 times a G_f of 60 J/m^2."""
     rock = lab_rock()
     toughness = rock.criterion.tensile_strength / 6.88
     soft, hooke = rock.after_failure.softening, rock.elasticity
     assert soft.G_f_I == pytest.approx(toughness**2 * (1.0 - hooke.nu**2) / hooke.E, rel=0.05)  # two digits are kept
-    assert soft.G_f_II / soft.G_f_I == pytest.approx(2.2**2, rel=0.02)
+    assert 29.0 < soft.G_f_II / soft.G_f_I < 143.0

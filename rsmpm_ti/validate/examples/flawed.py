@@ -118,7 +118,7 @@ INTACT = (
     Input("friction_angle", 40.0, "degrees", "Gao et al. 2023, sec. 4.1"),
     Input("tensile_strength", 2.0 * MPa, "Pa", "Gao et al. 2023, sec. 4.1"),
     Input("G_f_I", 5.0, "J/m^2", "`lab_rock`: see rsmpm_ti/rock/presets.py"),
-    Input("G_f_II", 24.0, "J/m^2", "`lab_rock`; case `mode_two` says what depends on it"),
+    Input("G_f_II", 240.0, "J/m^2", "`lab_rock`; case `mode_two` says what depends on it"),
 )
 
 CASES = (
