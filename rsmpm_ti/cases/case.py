@@ -65,3 +65,7 @@ class Case:
     about: str
     run: Callable[[bool], Outcome]
     quick: bool = True
+
+    def in_full(self, asked: bool) -> bool:
+        """Whether it is run in its full form, where that is `asked` for or it has no other."""
+        return asked or not self.quick

@@ -2,11 +2,12 @@
 
 import csv
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Collection
 from dataclasses import dataclass
 from pathlib import Path
 
 from rsmpm_ti.cases.case import Outcome, Row
+from rsmpm_ti.errors import SceneError
 from rsmpm_ti.records.files import complete, write_csv
 
 
@@ -43,20 +44,35 @@ VERDICTS = Layout(
 """Of rows that pass or miss."""
 
 
-def kept_table(path: Path, layout: Layout, cases: set[str]) -> list[list[str]]:
-    """Lines of an earlier table about these cases; none where the table is no such one."""
+FORMS = ("quick", "full")
+"""Of a case; the last column of a table that several runs of a command add to."""
+
+
+def kept_table(path: Path, layout: Layout, cases: Collection[str]) -> list[list[str]]:
+    """Lines of an earlier table about these cases. Raises SceneError for a file that is no such table: it may be
+    somebody else's."""
     try:
         with open(path, newline="", encoding="utf-8") as file:
             head, *lines = csv.reader(file)
-    except (OSError, ValueError, csv.Error):
+    except FileNotFoundError:
         return []
-    width = len(layout.columns)
-    return [line for line in lines if len(line) == width and line[0] in cases] if tuple(head) == layout.columns else []
+    except (OSError, ValueError, csv.Error):
+        head, lines = [], []
+    columns = [*layout.columns, "form"]
+    if head != columns or any(len(line) != len(columns) or line[-1] not in FORMS for line in lines):
+        what = "is no table of this command, or one of another version"
+        raise SceneError(f"{path} {what}; remove it, or give another folder with --out")
+    return [line for line in lines if line[0] in cases]
 
 
-def write_table(path: Path, table: list[list[str]], layout: Layout = VERDICTS) -> None:
-    """One line per compared number."""
-    write_csv(path, layout.columns, table)
+def write_kept_table(path: Path, table: list[list[str]], layout: Layout) -> None:
+    """One line per compared number, the form of its case last."""
+    write_csv(path, (*layout.columns, "form"), table)
+
+
+def write_table(path: Path, table: list[list[str]]) -> None:
+    """One line per number that passes or misses."""
+    write_csv(path, VERDICTS.columns, table)
 
 
 def print_rows(name: str, rows: tuple[Row, ...], seconds: float, layout: Layout = VERDICTS) -> None:

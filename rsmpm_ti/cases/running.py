@@ -8,14 +8,14 @@ from concurrent.futures import ThreadPoolExecutor, as_completed
 from dataclasses import dataclass
 from pathlib import Path
 
-from rsmpm_ti.cases.case import Case, Row
+from rsmpm_ti.cases.case import Case, Outcome, Row
 from rsmpm_ti.cases.report import draw
 from rsmpm_ti.process import end_with_parent, no_current_folder, without_ctrl_c
 
 
 @dataclass(frozen=True)
 class Finished:
-    """What came of one case; `problem`: why it broke, if it did."""
+    """What came of one case; `problem`: why it broke, or, where it has rows, why its picture is not there; else ""."""
 
     name: str
     rows: tuple[Row, ...]
@@ -30,22 +30,35 @@ def cases_of(catalogue: str) -> dict[str, Case]:
 
 def run_case(catalogue: str, name: str, full: bool, out: Path | None, threads: int = 1) -> tuple[Row, ...]:
     """Run one case in this process and draw it into `out`, if it has a picture; its rows."""
+    outcome = _outcome(catalogue, name, full, threads)
+    if out is not None:
+        _draw(out, name, outcome)
+    return outcome.rows
+
+
+def _outcome(catalogue: str, name: str, full: bool, threads: int) -> Outcome:
     from rsmpm_ti.backend.start import start_taichi
 
     start_taichi("f64", "cpu", threads)
-    outcome = cases_of(catalogue)[name].run(full)
-    if out is not None and outcome.draw is not None:
+    case = cases_of(catalogue)[name]
+    return case.run(case.in_full(full))
+
+
+def _draw(out: Path, name: str, outcome: Outcome) -> None:
+    if outcome.draw is not None:
         draw(out / f"{name}.png", outcome)
-    return outcome.rows
 
 
 def _work(task: tuple) -> Finished:
     catalogue, name, full, out, threads = task
-    start = time.perf_counter()
+    start, problem = time.perf_counter(), ""
+    rows: tuple[Row, ...] = ()
     try:
-        rows, problem = run_case(catalogue, name, full, out, threads), ""
+        outcome = _outcome(catalogue, name, full, threads)
+        rows = outcome.rows
+        _draw(out, name, outcome)
     except Exception as error:  # a case that breaks is a miss of that case, and the others still run
-        rows, problem = (), f"{type(error).__name__}: {error}"
+        problem = f"{type(error).__name__}: {error}"
     return Finished(name, rows, time.perf_counter() - start, problem)
 
 

@@ -35,7 +35,7 @@ def runs(quick: bool) -> list[Run]:
     common = {"time_scale": 16.0, "length": length}
     out = []
     for dx, angle, seed in plan:
-        settings = {"angle": angle, "dx": dx, "seed": seed, "paper": False, "end": 11.5e6}
+        settings = {"angle": angle, "dx": dx, "seed": seed, "paper": False, "end": 13e6}
         out.append(Run(f"lab_{1e3 * dx:g}_{angle:g}_{seed}", grow, settings | common))
     dx = 0.5 * length
     for angle in ANGLES:

@@ -5,7 +5,7 @@ import sys
 
 from rsmpm_ti.cases.command import Suite, run_suite
 from rsmpm_ti.validate.comparison import LAYOUT
-from rsmpm_ti.validate.record import write_records
+from rsmpm_ti.validate.record import PAGE, RECORD, TABLE, check, write_records
 
 CATALOGUE = "rsmpm_ti.validate.catalogue"
 
@@ -13,7 +13,9 @@ SUITE = Suite(
     name="validate",
     about="Hold predictions against experiments: measured distances; status 1: a case broke. A miss is a result.",
     catalogue=CATALOGUE,
-    table="validation.csv",
+    table=TABLE,
+    beside=(RECORD, PAGE),
+    check=check,
     layout=LAYOUT,
     write=functools.partial(write_records, CATALOGUE),
     misses_fail=False,

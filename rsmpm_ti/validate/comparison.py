@@ -42,16 +42,18 @@ class Comparison(Row):
 
     @property
     def verdict(self) -> str:
-        if self.tolerance == math.inf:
-            return "predicted"
         if not math.isfinite(self.got):
             return "nothing predicted"
+        if self.tolerance == math.inf:
+            return "predicted"
         if self.inside:
             return "inside the band"
         if self.passed:
             return "within the target"
         if self.beyond:
             return "beyond this model"
+        if not self.absolute and round(1e3 * abs(self.error)) == round(1e3 * self.tolerance):
+            return f"outside by {100.0 * abs(self.error):.2f} %"
         return f"outside by {self.distance.lstrip('+-')}"
 
 
@@ -60,7 +62,12 @@ def compare(
     scatter: float = math.nan, band: tuple[float, float] | None = None, datum: str = "", beyond: str = "",
     absolute: bool = False,
 ) -> Comparison:  # fmt: skip
-    """A measured number and its prediction. scatter: of the experiment, relative to it; or its `band` (low, high)."""
+    """A measured number and its prediction. scatter: of the experiment, relative to it; or its `band` (low, high).
+
+    Raises ValueError for a target below 0, and for a relative distance from 0.
+    """
+    if not target >= 0.0 or (measured == 0.0 and not absolute):
+        raise ValueError(f"{quantity}: a target of 0 or more, and of nothing measured an absolute distance")
     low, high = band or (measured * (1.0 - scatter), measured * (1.0 + scatter))
     low, high = min(low, high), max(low, high)
     error = predicted - measured if absolute else predicted / measured - 1.0
@@ -101,7 +108,7 @@ LAYOUT = Layout(
         "case",
         "quantity",
         "unit",
-        "measured",
+        "reference",
         "scatter",
         "predicted",
         "distance",

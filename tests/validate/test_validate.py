@@ -3,16 +3,18 @@
 import csv
 import json
 import math
+import re
 
 import pytest
 
+from rsmpm_ti.cases.case import Outcome
 from rsmpm_ti.cases.running import run_case
 from rsmpm_ti.validate.__main__ import CATALOGUE, main
 from rsmpm_ti.validate.catalogue import CASES, MODULES
 from rsmpm_ti.validate.comparison import Comparison, cells, compare, predict
 from rsmpm_ti.validate.data.tables import FOLDER, gregoire, strengths
 from rsmpm_ti.validate.experiment import Experiment, Input
-from rsmpm_ti.validate.record import write_records
+from rsmpm_ti.validate.record import PAGE, RECORD, TABLE, write_records
 from rsmpm_ti.validate.strength.fits import hoek_brown, mohr_coulomb
 
 PINNED = {
@@ -90,10 +92,54 @@ def test_no_case_is_judged_by_what_it_was_made_of(name):
     assert case.inputs and all(len(given.source) > 3 and math.isfinite(given.value) for given in case.inputs)
 
 
-def test_case_that_would_judge_its_own_fit_cannot_be_made():
-    given = Input("cohesion", 1e6, "Pa", "a line", ("table.csv:2",))
-    with pytest.raises(ValueError, match="judged by what it was fitted on: table.csv:2"):
-        Experiment("circular", "", lambda full: None, inputs=(given,), judged=("table.csv:2", "table.csv:3"))
+WESTERLY = "strength_envelopes.csv"
+
+
+def made(*, fitted_on=(), judged=(), value: float = 1e6, row: Comparison | None = None) -> Experiment:
+    given = Input("cohesion", value, "Pa", "a line", fitted_on)
+    return Experiment("circular", "", lambda full: Outcome((row,) if row else ()), inputs=(given,), judged=judged)
+
+
+@pytest.mark.parametrize(
+    "fitted_on, judged, word",
+    [
+        ((f"{WESTERLY}:3",), (f"{WESTERLY}:3", f"{WESTERLY}:4"), f"judged by what it was fitted on: {WESTERLY}:3"),
+        ((WESTERLY,), (f"{WESTERLY}:3",), "judged by what it was fitted on"),
+        ((f"{WESTERLY}:3",), (WESTERLY,), "judged by what it was fitted on"),
+        ((f"{WESTERLY}:03",), (), "is no measured number"),
+        ((f"./{WESTERLY}:3",), (), "is no measured number"),
+        ((f"{WESTERLY}:3 ",), (), "is no measured number"),
+        ((f"{WESTERLY}:3, {WESTERLY}:4",), (), "is no measured number"),
+        ((f"{WESTERLY}:9999",), (), "is no measured number"),
+        (("moon.csv",), (), "is no measured number"),
+        (f"{WESTERLY}:3", (), "not the text"),
+        ((), f"{WESTERLY}:3", "not the text"),
+    ],
+)
+def test_case_that_would_judge_its_own_fit_cannot_be_made(fitted_on, judged, word):
+    with pytest.raises(ValueError, match=re.escape(word)):
+        made(fitted_on=fitted_on, judged=judged)
+
+
+def test_case_without_an_input_cannot_be_made():
+    with pytest.raises(ValueError, match="declares no input"):
+        Experiment("empty", "", lambda full: Outcome(()), inputs=())
+
+
+def test_rows_are_held_against_what_the_case_declares():
+    row = compare("a", "MPa", 385.0, 380.0, 0.05, "Mogi 1967", datum=f"{WESTERLY}:3")
+    assert made(judged=(f"{WESTERLY}:3",), row=row).run(False).rows == (row,)
+    assert made(judged=(WESTERLY,), row=row).run(False).rows == (row,)
+    with pytest.raises(ValueError, match="which is not declared"):
+        made(fitted_on=(f"{WESTERLY}:3",), row=row).run(False)
+    with pytest.raises(ValueError, match="a is judged by its input cohesion"):
+        made(judged=(f"{WESTERLY}:3",), value=385e6, row=row).run(False)
+
+
+@pytest.mark.parametrize("measured, target", [(0.0, 0.1), (1.0, -0.1)])
+def test_comparison_that_says_nothing_is_refused(measured, target):
+    with pytest.raises(ValueError, match="a target of 0 or more"):
+        compare("a", "MPa", measured, 1.0, target, "source")
 
 
 def test_keys_are_lines_of_the_tables():
@@ -121,12 +167,14 @@ def test_a_line_is_made_of_the_points_it_is_given():
         (compare("a", "MPa", 10.0, 10.4, 0.02, "source", scatter=0.05), "inside the band", True),
         (compare("a", "MPa", 10.0, 10.4, 0.05, "source"), "within the target", True),
         (compare("a", "MPa", 10.0, 12.0, 0.05, "source"), "outside by 20.0 %", False),
+        (compare("a", "MPa", 10.0, 10.504, 0.05, "source"), "outside by 5.04 %", False),
         (compare("a", "MPa", -10.0, -12.0, 0.05, "source", scatter=0.3), "inside the band", True),
         (compare("a", "MPa", 10.0, 12.0, 0.05, "source", beyond="no sigma_2"), "beyond this model", False),
         (compare("a", "degrees", 70.0, 62.0, 5.0, "source", absolute=True), "outside by 8 degrees", False),
         (compare("a", "degrees", 70.0, 62.0, 5.0, "source", absolute=True, band=(60.0, 80.0)), "inside the band", True),
         (compare("a", "MPa", 10.0, math.nan, 0.05, "source"), "nothing predicted", False),
         (predict("a", "MPa", 10.0, "nobody measured it"), "predicted", True),
+        (predict("a", "MPa", math.nan, "it did not break"), "nothing predicted", True),
     ],
 )
 def test_verdict(row: Comparison, verdict, passed):
@@ -161,9 +209,9 @@ def test_command_writes_table_json_page_and_picture(tmp_path, capsys):
     assert main(["westerly", "--out", str(tmp_path), "--jobs", "1"]) == 0
     assert "within the target" in capsys.readouterr().out
     (row,) = csv.DictReader((tmp_path / "validation.csv").open(encoding="utf-8"))
-    assert row["case"] == "westerly" and row["measured"] == "424"
+    assert row["case"] == "westerly" and row["reference"] == "424"
     record = json.loads((tmp_path / "validation.json").read_text(encoding="utf-8"))["cases"]["westerly"]
-    assert record["rows"][0]["datum"] == row["datum"] and record["inputs"][0]["fitted_on"]
+    assert record["rows"][0]["datum"] == row["datum"] and any(given["fitted_on"] for given in record["inputs"])
     assert "| strength under 17 MPa | 424 |" in (tmp_path / "validation.md").read_text(encoding="utf-8")
     assert (tmp_path / "westerly.png").is_file()
 
@@ -171,21 +219,34 @@ def test_command_writes_table_json_page_and_picture(tmp_path, capsys):
 def test_records_keep_what_is_known_of_other_cases(tmp_path):
     """Each with its tier; a page says which cases were run in their quick form."""
     rows = [("zigong", compare("a", "MPa", 10.0, 12.0, 0.05, "source"))]
-    write_records(CATALOGUE, tmp_path, rows, True, [cells(*entry) for entry in rows])
+    first = [[*cells(*entry), "full"] for entry in rows]
+    write_records(CATALOGUE, tmp_path, rows, first)
     more = [("westerly", compare("b", "MPa", 10.0, 10.1, 0.05, "source"))]
-    write_records(CATALOGUE, tmp_path, more, False, [cells(*entry) for entry in (*more, *rows)])
-    found = json.loads((tmp_path / "validation.json").read_text(encoding="utf-8"))["cases"]
+    both = [*([*cells(*entry), "quick"] for entry in more), *first]
+    write_records(CATALOGUE, tmp_path, more, both)
+    found = json.loads((tmp_path / RECORD).read_text(encoding="utf-8"))["cases"]
     assert [(name, case["full"], case["rows"][0]["quantity"]) for name, case in found.items()] == [
         ("westerly", False, "b"),
         ("zigong", True, "a"),
     ]
-    (tmp_path / "validation.json").write_text(json.dumps({"cases": {"zigong": {"about": "of an older version"}}}))
-    write_records(CATALOGUE, tmp_path, more, False, [cells(*entry) for entry in (*more, *rows)])
-    assert list(json.loads((tmp_path / "validation.json").read_text(encoding="utf-8"))["cases"]) == ["westerly"]
-    page = (tmp_path / "validation.md").read_text(encoding="utf-8")
+    page = (tmp_path / PAGE).read_text(encoding="utf-8")
     assert "**`westerly`**, quick form" in page and "**`zigong`**\n" in page
+
+
+@pytest.mark.parametrize("text", ["", "{}", '{"cases": {"zigong": {"about": "of an older version"}}}', '{"cases": 3}'])
+def test_record_of_somebody_else_is_not_replaced(text, tmp_path, capsys):
+    (tmp_path / RECORD).write_text(text)
+    assert main(["westerly", "--out", str(tmp_path)]) == 2
+    assert "is no record of this command" in capsys.readouterr().err
+    assert (tmp_path / RECORD).read_text() == text
+
+
+def test_page_without_a_table_is_not_replaced(tmp_path, capsys):
+    (tmp_path / PAGE).write_text("mine")
+    assert main(["westerly", "--out", str(tmp_path)]) == 2
+    assert f"has no {TABLE} beside it" in capsys.readouterr().err
 
 
 def test_unknown_case_is_refused(capsys):
     assert main(["moon"]) == 2
-    assert "unknown case moon" in capsys.readouterr().err
+    assert "unknown case 'moon'" in capsys.readouterr().err

@@ -8,7 +8,7 @@ Arms of l_ch = E' G_f/sigma_t^2 must bend to f_t sqrt(3 l_ch/h), beyond their st
 bend is not stable in its direction: beside its tip there is tension along it (Cotterell & Rice 1980, Int. J. Fract.
 16:155). So both ends are pressed along the beam, as Benbow & Roesler (1957), Proc. Phys. Soc. B 70:201, did to split
 bars straight. The thrust N on an arm releases no energy of its own; it makes the arm a beam-column (Timoshenko & Gere
-1961, Theory of Elastic Stability, sec. 1.11): with k = sqrt(12 N/(E' h^3)),
+1961, Theory of Elastic Stability, ch. 1): with k = sqrt(12 N/(E' h^3)),
 
     M = P tan(k x)/k,    G = 12 M^2/(E' h^3),
     w = 2 P (tan(k x) - k x)/(N k) + 8 P n^3 (1/t^3 - 1/h^3)/E' - 12 N e n^2/(E' t^3),
@@ -153,7 +153,7 @@ def scene_of(rock: Rock, beams: Beams) -> Scene:
             holes=tuple(HolePressure(region=face, times=(0.15 * duration,), pressures=(PRESSURE,)) for face in faces),
             cell=LoadCell(gauges=(Gauge(name="ends", a=(INSET, -0.5 * ARM), b=(INSET, 0.5 * ARM), reads="opening"),)),
         ),
-        schedule=Schedule(strain_end=-END / (2.0 * ARM), cfl=1.0),
+        schedule=Schedule(strain_end=-END / (2.0 * ARM), cfl=1.0, rows=3000),
         transfer=PicFlip(),
     )  # fmt: skip
 

@@ -20,7 +20,7 @@ from rsmpm_ti.validate.data.tables import Strength, strengths
 from rsmpm_ti.validate.experiment import Experiment, Input
 from rsmpm_ti.validate.strength.fits import fairhurst_strength, mohr_coulomb
 from rsmpm_ti.validate.strength.picture import draw_envelope, draw_points
-from rsmpm_ti.validate.strength.specimens import axial_strength, rock_like
+from rsmpm_ti.validate.strength.specimens import axial_strength, of_the_shelf, rock_like
 
 POINTS = strengths("Carrara marble", "extension")
 TENSION_UP_TO, SHEAR_FROM = 60.0 * MPa, 110.0 * MPa
@@ -123,10 +123,17 @@ CASES = (
         "Carrara marble in extension: tension first, then shear, and a smooth hybrid, from two points of each branch",
         extension,
         inputs=(
+            *of_the_shelf("carrara_marble"),
             Input("tensile_strength", STRENGTH, "Pa", "mean axial tension at both ends of the tension branch", ENDS),
             Input("cohesion", COHESION, "Pa", "line through both ends of the shear branch", SHEARED),
             Input("friction_angle", FRICTION, "degrees", "the same line", SHEARED),
-            Input("compressive_strength", COMPRESSIVE, "Pa", "parabola by both ends of the shear branch", SHEARED),
+            Input(
+                "compressive_strength",
+                COMPRESSIVE,
+                "Pa",
+                "parabola by both ends of the shear branch, and the tension",
+                (*ENDS, *SHEARED),
+            ),
         ),
         judged=tuple(p.key for p in JUDGED),
     ),

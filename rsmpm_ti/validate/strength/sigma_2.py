@@ -15,7 +15,7 @@ from rsmpm_ti.validate.comparison import compare
 from rsmpm_ti.validate.data.tables import Strength, strengths
 from rsmpm_ti.validate.experiment import Experiment, Input
 from rsmpm_ti.validate.strength.fits import mohr_coulomb
-from rsmpm_ti.validate.strength.specimens import axial_strength, rock_like
+from rsmpm_ti.validate.strength.specimens import axial_strength, of_the_shelf, rock_like
 
 POINTS = strengths("Westerly granite", "true triaxial")
 PRESSURES = tuple(sorted({p.sigma_3 for p in POINTS}))
@@ -80,6 +80,7 @@ CASES = (
         plane_strain,
         quick=False,
         inputs=(
+            *of_the_shelf("westerly_granite", tension=TENSION),
             Input("cohesion", COHESION, "Pa", "line through the tests of least sigma_2", KEYS),
             Input("friction_angle", FRICTION, "degrees", "the same line", KEYS),
         ),

@@ -11,6 +11,7 @@ from dataclasses import replace
 
 from rsmpm_ti import load_rock, simulate, uniaxial_test
 from rsmpm_ti.rock.rock import Rock
+from rsmpm_ti.validate.experiment import Input
 
 CELLS, QUICK_CELLS = 25, 12
 """Across a width of 50 mm."""
@@ -25,6 +26,13 @@ def rock_like(name: str, criterion) -> Rock:
     """Density and elasticity of a rock of the shelf, breaking at another criterion by the paper's rule."""
     of_shelf = load_rock(name)
     return Rock(density=of_shelf.density, elasticity=of_shelf.elasticity, criterion=criterion)
+
+
+def of_the_shelf(name: str, *, tension: float | None = None) -> tuple[Input, ...]:
+    """What `rock_like` takes of the shelf, and the tensile strength [Pa] where that is none of the case's own."""
+    elastic, source = load_rock(name).elasticity, f"shelf, scenes/rocks/{name}.toml"
+    found = (Input("E", elastic.E, "Pa", source), Input("nu", elastic.nu, "1", source))
+    return found if tension is None else (*found, Input("tensile_strength", tension, "Pa", source))
 
 
 def axial_strength(rock: Rock, pressure: float, *, expected: float, full: bool) -> float:

@@ -8,7 +8,7 @@ from rsmpm_ti.validate.data.tables import strengths
 from rsmpm_ti.validate.experiment import Experiment, Input
 from rsmpm_ti.validate.strength.fits import ends_and_middle, mohr_coulomb
 from rsmpm_ti.validate.strength.picture import draw_envelope
-from rsmpm_ti.validate.strength.specimens import axial_strength, rock_like
+from rsmpm_ti.validate.strength.specimens import axial_strength, of_the_shelf, rock_like
 
 POINTS = strengths("Westerly granite", "compression")
 FITTED = ends_and_middle(POINTS)
@@ -57,6 +57,7 @@ CASES = (
         "Westerly granite in compression: a Mohr-Coulomb line through three strengths predicts the others",
         envelope,
         inputs=(
+            *of_the_shelf("westerly_granite", tension=TENSION),
             Input("cohesion", COHESION, "Pa", "line through the strengths at both ends and in the middle", KEYS),
             Input("friction_angle", FRICTION, "degrees", "the same line", KEYS),
         ),
