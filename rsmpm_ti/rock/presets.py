@@ -24,7 +24,7 @@ def lab_rock(
     G_f_I: Zhang (2002), Int. J. Rock Mech. Min. Sci. 39:401, sigma_t = 6.88 K_Ic (MPa, MPa sqrt(m)), so that
     K_Ic = 0.29 MPa sqrt(m) and, in plane strain, G_f_I = K_Ic^2 (1 - nu^2)/E = 4.9 J/m^2. G_f_II = 48 G_f_I: of
     intact granite, under pressure, 1.7 to 8.6 kJ/m^2 by Moore & Lockner (1995), J. Struct. Geol. 17:95, which is 29 to
-    143 times a G_f of 60 J/m^2. No peak of a flawed specimen depends on it from half of that on (docs/validation.md).
+    143 times a G_f of 60 J/m^2. From there on the peak of a flawed specimen rises no more with it (docs/validation.md).
     Raises SceneError for values that the laws refuse.
     """
     softening = LinearSoftening(G_f_I=G_f_I, G_f_II=G_f_II)

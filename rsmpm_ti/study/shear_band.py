@@ -76,13 +76,18 @@ def bands(x: np.ndarray) -> list[Strip]:
     return sorted(pair, key=lambda strip: -int(strip.inside.sum()))
 
 
+ENERGY, END = 24.0, 1.2e-3
+"""G_f_II [J/m^2], so that rock softens by 0.15 mu and bands within the run, and strain at its end [1]."""
+
+
 def crush(*, seed: int, psi: float) -> dict:
     """`intact_weibull --quick` to its end: places where particles lost half their cohesion, and peak stress over UCS.
 
-    psi: angle of dilation [degrees].
+    psi: angle of dilation [degrees]. The rock loses cohesion over ENERGY, a tenth of the scene's own G_f_II.
     """
-    scene = load_scene("intact_weibull", quick=True, seed=seed)
-    law = replace(scene.rock.after_failure, dilation_angle=psi)
+    scene = load_scene("intact_weibull", quick=True, seed=seed, strain_end=END)
+    law = scene.rock.after_failure
+    law = replace(law, dilation_angle=psi, softening=replace(law.softening, G_f_II=ENERGY))
     scene = replace(scene, rock=replace(scene.rock, after_failure=law))
     result = simulate(scene, threads=1)
     ucs = scene.rock.criterion.ucs

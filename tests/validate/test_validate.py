@@ -49,7 +49,7 @@ PINNED = {
         "velocity of scab 3": 1.078,
     },
     "kalthoff": {
-        "with fracture energy: angle of the crack, tip to end": 10.7,
+        "with fracture energy: angle of the crack, tip to end": -13.3,
         "with fracture energy: angle over its first 3 mm": -10.0,
         "with fracture energy: largest speed over c_R": -0.360,
     },
