@@ -30,6 +30,9 @@ from rsmpm_ti import (
 # a coarser rock: its mean is over two cells at least
 QUICK = {"dx": 2.0 * mm, "length": 4.0 * mm}
 
+BRITTLE = 24.0
+"""G_f_II [J/m^2], a tenth of the lab's rock's: what counts is mu G_f_II/c^2 over the radius, and this hole is small."""
+
 
 def scene(
     *,
@@ -47,7 +50,7 @@ def scene(
         title="Excavation of a tunnel",
         domain=Domain(lower=(-half, -half), upper=(half, half), dx=dx),
         bodies=(Body(region=Box(lower=(-half, -half), upper=(half, half)), seeding=Jittered(seed=seed, fitted=True)),),
-        rock=lab_rock(length=length),
+        rock=lab_rock(length=length, G_f_II=BRITTLE),
         loading=Loading(
             boundaries=tuple(
                 Wall(axis=axis, side=side, position=half if side == "upper" else -half)

@@ -30,6 +30,9 @@ from rsmpm_ti import (
 # a coarser rock: its mean is over two cells at least
 QUICK = {"dx": 2.0 * mm, "length": 4.0 * mm}
 
+BRITTLE = 24.0
+"""G_f_II [J/m^2], a tenth of the lab's rock's: what counts is mu G_f_II/c^2 over the radius, and this hole is small."""
+
 
 def scene(
     *,
@@ -56,7 +59,7 @@ def scene(
         title="Tunnel in ground under stress",
         domain=Domain(lower=(-half, -half), upper=(half, half), dx=dx),
         bodies=(Body(region=Difference(whole=block, removed=(hole,)), seeding=Jittered(seed=seed, fitted=True)),),
-        rock=lab_rock(length=length),
+        rock=lab_rock(length=length, G_f_II=BRITTLE),
         loading=Loading(
             boundaries=boundaries,
             start=Affine(),

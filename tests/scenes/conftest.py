@@ -19,7 +19,7 @@ COARSE = {
     "intact_weibull": {"dx": 1.25e-3, "length": 2.5e-3, "time_scale": 80.0, "strain_end": 1.3e-3},
     "notched_beam": {"depth": 32e-3, "notch": 16e-3, "deflection_end": 3.2e-5, "dx": 2e-3, "length": 4e-3,
                      "time_scale": 6.0},
-    "semicircular_bend": {"dx": 2e-3, "length": 4e-3, "deflection_end": 3e-5},
+    "semicircular_bend": {"dx": 2e-3, "length": 4e-3, "deflection_end": 1.5e-5},
     "direct_shear": {"dx": 2e-3, "length": 4e-3},
     "tunnel": {"dx": 2e-3, "length": 4e-3, "time_scale": 30.0},
     "inclusion": {"dx": 1.25e-3, "length": 2.5e-3, "time_scale": 30.0, "strain_end": 7.5e-4},

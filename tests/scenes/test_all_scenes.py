@@ -183,7 +183,7 @@ NUMBERS = {
         source="Kirsch (1898), while the support fades, from 0.01 to 0.21 ms",
     ),
     "blast_hole": Number(
-        name="first_failure_time_s", pinned=6.99e-6, rel=0.03,
+        name="first_failure_time_s", pinned=7.68e-6, rel=0.03,
         bounds=(8e-6 * math.asin(math.sqrt(STRENGTH / 16e6)) / (0.5 * math.pi), 8e-6),
         source="Lame: the hoop stress of a wall at rest is the pressure, 16 MPa sin^2, which a wall in motion reaches"
         " later, but before the peak it is eight times the strength",
