@@ -10,6 +10,6 @@ MODULES = (
     gregoire, flawed, mode_two, westerly, zigong, carrara, sigma_2, edge_notch, cantilever, spall, scabs, kalthoff,
     crack_speed, paper,
 )  # fmt: skip
-"""The longest first, so that none is left to run alone at the end."""
+"""The longest, a beam on fine cells, first: it would be left to run alone at the end."""
 
 CASES: dict[str, Experiment] = {case.name: case for module in MODULES for case in module.CASES}
